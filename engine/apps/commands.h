@@ -1,0 +1,19 @@
+// The subcommands of `toile`; each file of this folder adds its own.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace toile::apps {
+
+/// Options that every subcommand takes.
+struct GlobalOptions {
+    std::vector<std::filesystem::path> plugin_folders; ///< --plugins
+    std::uint64_t seed = 1;                            ///< --seed
+    std::uint32_t threads = 0;                         ///< --threads; 0: all cores
+    bool verbose = false;                              ///< --verbose
+};
+
+} // namespace toile::apps

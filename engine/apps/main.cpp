@@ -1,0 +1,51 @@
+#include "apps/commands.h"
+#include "core/error.h"
+#include "core/log.h"
+
+#include <cstdio>
+#include <exception>
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+int run(int argc, char** argv) {
+    CLI::App app("Toile, a garment try-on engine", "toile");
+    app.set_version_flag("--version", TOILE_VERSION);
+    app.require_subcommand(1);
+    app.fallthrough();
+    toile::apps::GlobalOptions options;
+    app.add_option("--plugins", options.plugin_folders, "Further folders to look for plugins in")
+        ->type_name("DIR");
+    app.add_option("--seed", options.seed, "Seed of all random numbers")->capture_default_str();
+    app.add_option("--threads", options.threads, "Threads to compute with; 0: all cores");
+    app.add_flag("--verbose", options.verbose, "Say more on standard error");
+    app.parse_complete_callback([&] {
+        if (options.verbose) toile::log::set_level(toile::log::Level::debug);
+    });
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : kWrongUsage;
+    } catch (const toile::UsageError& e) {
+        toile::log::error(e.what());
+        return kWrongUsage;
+    } catch (const std::exception& e) {
+        toile::log::error(e.what());
+        return kFailed;
+    }
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (__builtin_cpu_supports("x86-64-v3") == 0) {
+        std::fputs("toile: this processor lacks AVX2 and FMA (x86-64-v3), which Toile needs\n",
+                   stderr);
+        return kFailed;
+    }
+    return run(argc, argv);
+}

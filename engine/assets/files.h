@@ -1,0 +1,28 @@
+// Reading and writing 3D files; the extension picks the format.
+#pragma once
+
+#include "assets/scene.h"
+
+#include <cstddef>
+#include <filesystem>
+
+namespace toile::assets {
+
+/// Bounds that keep a hostile file from taking the machine.
+struct ImportLimits {
+    std::size_t max_file_bytes = 256u << 20;
+    std::size_t max_vertices = 2'000'000;
+    std::size_t max_triangles = 4'000'000;
+    std::size_t max_texture_side = 8192; ///< pixels
+};
+
+/// Reads .glb and .gltf (tinygltf), .obj, .ply, .fbx (assimp). Metres are assumed except where the
+/// format says otherwise (FBX: its unit scale factor). Skins come out checked: see check_skins.
+/// \throw Error naming the file and what is wrong with it
+[[nodiscard]] Scene load_scene(const std::filesystem::path& file, const ImportLimits& limits = {});
+
+/// Writes .glb, .obj or .ply. A .glb holds everything; .obj and .ply geometry only.
+/// \throw Error
+void save_scene(const Scene& scene, const std::filesystem::path& file);
+
+} // namespace toile::assets
