@@ -56,8 +56,8 @@ struct Skeleton {
 
 /// Rotation of each joint relative to its parent (identity at rest), and where the hips are.
 struct Pose {
-    Vec3f hips_position = Vec3f::Zero();                    ///< world, metres
-    std::array<Quatf, kJointCount> rotations;               ///< local; hips: world
+    Vec3f hips_position = Vec3f::Zero();      ///< world, metres
+    std::array<Quatf, kJointCount> rotations; ///< local; hips: world
     Pose() { rotations.fill(Quatf::Identity()); }
 };
 
@@ -66,7 +66,8 @@ using JointTransforms = std::array<RigidTransform, kJointCount>;
 
 /// The pose in which the body stands as modelled.
 [[nodiscard]] Pose rest_pose(const Skeleton& skeleton);
-[[nodiscard]] JointTransforms forward_kinematics(const Skeleton& skeleton, const Pose& pose) noexcept;
+[[nodiscard]] JointTransforms forward_kinematics(const Skeleton& skeleton,
+                                                 const Pose& pose) noexcept;
 /// Maps rest-surface points of a joint into the world: world_from_joint * joint_from_rest.
 [[nodiscard]] JointTransforms skinning_transforms(const Skeleton& skeleton,
                                                   const JointTransforms& world) noexcept;
