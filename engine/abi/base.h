@@ -62,7 +62,7 @@ enum {
 };
 
 typedef struct toile_view {
-    const void *data; /* first element, or null when count is 0                        */
+    const void* data; /* first element, or null when count is 0                        */
     uint32_t count;   /* elements                                                      */
     uint32_t stride;  /* bytes from one element to the next                            */
     uint32_t format;  /* TOILE_F32 ...                                                 */
@@ -70,28 +70,28 @@ typedef struct toile_view {
 } toile_view;
 
 typedef struct toile_view_mut {
-    void *data;
+    void* data;
     uint32_t count, stride, format, reserved;
 } toile_view_mut;
 
 /* One triangle mesh. */
 typedef struct toile_mesh {
     uint32_t size, reserved;
-    toile_view positions;      /* F32X3 (nv)                                           */
-    toile_view normals;        /* F32X3 (nv), or count 0                               */
-    toile_view colors;         /* U8X4 sRGB (nv), or count 0                           */
-    toile_view triangles;      /* U32X3 (nf), every index < nv                         */
-    toile_view corner_coords;  /* F32X2 (3 nf): texture or material coordinates, or 0  */
-    uint64_t topology_id;      /* equal ids mean equal triangles                       */
+    toile_view positions;     /* F32X3 (nv)                                           */
+    toile_view normals;       /* F32X3 (nv), or count 0                               */
+    toile_view colors;        /* U8X4 sRGB (nv), or count 0                           */
+    toile_view triangles;     /* U32X3 (nf), every index < nv                         */
+    toile_view corner_coords; /* F32X2 (3 nf): texture or material coordinates, or 0  */
+    uint64_t topology_id;     /* equal ids mean equal triangles                       */
 } toile_mesh;
 
 /* ---- long calls ---------------------------------------------------------------------------- */
 /* Handed to every call that may take longer than a frame. Host-owned, lives until it returns. */
 typedef struct toile_job {
     uint32_t size, reserved;
-    void *job_data;
+    void* job_data;
     /* fraction in [0,1], text or null. Nonzero: cancelled, return TOILE_CANCELLED soon. [any] */
-    int32_t (*progress)(struct toile_job *, double fraction, const char *text);
+    int32_t (*progress)(struct toile_job*, double fraction, const char* text);
 } toile_job;
 
 /* Output of unknown size: the plugin asks, the host allocates, the plugin fills, the host
@@ -103,11 +103,11 @@ typedef struct toile_mesh_buffers {
 
 typedef struct toile_mesh_sink {
     uint32_t size, reserved;
-    void *sink_data;
+    void* sink_data;
     /* out->size is set by the plugin; buffers live until commit.            [worker or main] */
-    toile_status (*begin)(struct toile_mesh_sink *, uint32_t nv, uint32_t nf,
-                          toile_mesh_buffers *out);
-    toile_status (*commit)(struct toile_mesh_sink *); /* [worker or main] */
+    toile_status (*begin)(struct toile_mesh_sink*, uint32_t nv, uint32_t nf,
+                          toile_mesh_buffers* out);
+    toile_status (*commit)(struct toile_mesh_sink*); /* [worker or main] */
 } toile_mesh_sink;
 
 #ifdef __cplusplus

@@ -51,12 +51,12 @@ enum {
 };
 
 typedef struct toile_landmark {
-    const char *name;
+    const char* name;
     uint32_t vertex, reserved;
 } toile_landmark;
 
 typedef struct toile_measurement {
-    const char *name; /* ISO 8559-1 in snake_case: "waist_girth"                           */
+    const char* name; /* ISO 8559-1 in snake_case: "waist_girth"                           */
     float value;      /* metres                                                            */
     float confidence; /* [0,1]                                                             */
 } toile_measurement;
@@ -65,7 +65,7 @@ typedef struct toile_measurement {
 typedef struct toile_body {
     uint32_t size, reserved;
     uint64_t revision;        /* never 0; equal revisions mean equal bodies                */
-    const char *model_id;     /* "mannequin"; empty for a free mesh                        */
+    const char* model_id;     /* "mannequin"; empty for a free mesh                        */
     toile_view coefficients;  /* F32 (nc) shape coefficients, or count 0                   */
     toile_mesh rest;          /* rest surface: A pose, feet on y = 0, faces +Z             */
     toile_view rest_joints;   /* F32X3 (22) joint positions in the rest pose; at rest every
@@ -97,14 +97,14 @@ typedef struct toile_joint {
 /* What moves: one person in one frame. */
 typedef struct toile_body_state {
     uint32_t size;
-    uint32_t person_id;      /* stable over a run, never 0                                 */
-    uint32_t tracking;       /* TOILE_TRACKING_*                                           */
-    uint32_t sequence;       /* of the frame it was made from                              */
-    int64_t timestamp_ns;    /* capture time of that frame                                 */
-    uint64_t body_revision;  /* the toile_body that it poses                               */
-    toile_view joints;       /* STRUCT toile_joint (22)                                    */
-    toile_view positions;    /* F32X3 (nv) posed surface, or count 0 before skinning       */
-    toile_view normals;      /* F32X3 (nv), or count 0                                     */
+    uint32_t person_id;     /* stable over a run, never 0                                 */
+    uint32_t tracking;      /* TOILE_TRACKING_*                                           */
+    uint32_t sequence;      /* of the frame it was made from                              */
+    int64_t timestamp_ns;   /* capture time of that frame                                 */
+    uint64_t body_revision; /* the toile_body that it poses                               */
+    toile_view joints;      /* STRUCT toile_joint (22)                                    */
+    toile_view positions;   /* F32X3 (nv) posed surface, or count 0 before skinning       */
+    toile_view normals;     /* F32X3 (nv), or count 0                                     */
 } toile_body_state;
 
 #ifdef __cplusplus

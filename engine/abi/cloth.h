@@ -39,12 +39,12 @@ typedef struct toile_garment_state {
 } toile_garment_state;
 
 typedef struct toile_cloth_step {
-    uint32_t size, flags;                 /* TOILE_STEP_*                                      */
-    const toile_body_state *body_before;  /* at the start of the step; equal to after at first */
-    const toile_body_state *body_after;   /* at its end                                        */
+    uint32_t size, flags;                /* TOILE_STEP_*                                      */
+    const toile_body_state* body_before; /* at the start of the step; equal to after at first */
+    const toile_body_state* body_after;  /* at its end                                        */
     double dt_s;
-    const toile_garment_target *targets;  /* (garment_count)                                   */
-    toile_garment_state *states;          /* (garment_count)                                   */
+    const toile_garment_target* targets; /* (garment_count)                                   */
+    toile_garment_state* states;         /* (garment_count)                                   */
     uint32_t garment_count, reserved;
 } toile_cloth_step;
 
@@ -52,12 +52,12 @@ typedef struct toile_cloth_step {
 typedef struct toile_cloth {
     uint32_t size, reserved;
     /* Copies what it needs: topology, parts, weights of the body to collide with. [worker] */
-    toile_status (*set_body)(toile_instance *, const toile_body *, toile_job *);
+    toile_status (*set_body)(toile_instance*, const toile_body*, toile_job*);
     /* *garment out: a handle, never 0.                                            [worker] */
-    toile_status (*add_garment)(toile_instance *, const toile_cloth_garment *, toile_job *,
-                                uint32_t *garment);
-    toile_status (*remove_garment)(toile_instance *, uint32_t garment); /* [worker] */
-    toile_status (*step)(toile_instance *, const toile_cloth_step *);   /* [frame]  */
+    toile_status (*add_garment)(toile_instance*, const toile_cloth_garment*, toile_job*,
+                                uint32_t* garment);
+    toile_status (*remove_garment)(toile_instance*, uint32_t garment); /* [worker] */
+    toile_status (*step)(toile_instance*, const toile_cloth_step*);    /* [frame]  */
 } toile_cloth;
 
 #ifdef __cplusplus

@@ -15,10 +15,10 @@ typedef struct toile_intrinsics {
 
 typedef struct toile_stream {
     uint32_t size;
-    uint32_t camera;              /* index of the camera in the device or capture            */
-    toile_intrinsics depth;       /* width 0: no depth                                      */
-    toile_intrinsics color;       /* width 0: no colour                                     */
-    double color_from_depth[16];  /* identity when registered                               */
+    uint32_t camera;             /* index of the camera in the device or capture            */
+    toile_intrinsics depth;      /* width 0: no depth                                      */
+    toile_intrinsics color;      /* width 0: no colour                                     */
+    double color_from_depth[16]; /* identity when registered                               */
     double world_from_camera[16];
     uint32_t has_world, registered;
     double frame_period_s;
@@ -27,7 +27,7 @@ typedef struct toile_stream {
 typedef struct toile_frame {
     uint32_t size;
     uint32_t camera;
-    uint32_t sequence;    /* + 1 per new frame; gaps mean drops                             */
+    uint32_t sequence; /* + 1 per new frame; gaps mean drops                             */
     uint32_t reserved;
     int64_t timestamp_ns; /* capture time                                                   */
     toile_view depth_m;   /* F32 (width * height), rows from the top, NaN where unknown      */

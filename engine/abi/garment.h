@@ -23,17 +23,17 @@ typedef struct toile_fabric {
 /* One size of one design. nv: vertices of the welded simulation mesh. */
 typedef struct toile_garment_package {
     uint32_t size;
-    uint32_t layer;           /* 0 next to the skin                                           */
-    const char *id;           /* "t-shirt"                                                    */
-    const char *version;
-    const char *size_name;    /* "M"                                                          */
-    toile_mesh simulation;    /* as made, on the body below; corner_coords: metres, rest state */
-    toile_view joint_indices; /* U16X4 (nv), or count 0: the plugin finds them                */
-    toile_view joint_weights; /* F32X4 (nv)                                                   */
-    toile_view pins;          /* F32 (nv) 0 free .. 1 held to the body, or count 0            */
-    const toile_body *made_on; /* body and pose that the mesh was made on, or null            */
+    uint32_t layer; /* 0 next to the skin                                           */
+    const char* id; /* "t-shirt"                                                    */
+    const char* version;
+    const char* size_name;     /* "M"                                                          */
+    toile_mesh simulation;     /* as made, on the body below; corner_coords: metres, rest state */
+    toile_view joint_indices;  /* U16X4 (nv), or count 0: the plugin finds them                */
+    toile_view joint_weights;  /* F32X4 (nv)                                                   */
+    toile_view pins;           /* F32 (nv) 0 free .. 1 held to the body, or count 0            */
+    const toile_body* made_on; /* body and pose that the mesh was made on, or null            */
     toile_fabric fabric;
-    float ease_m;             /* least wanted distance from the skin                          */
+    float ease_m; /* least wanted distance from the skin                          */
     uint32_t reserved;
 } toile_garment_package;
 
@@ -49,10 +49,10 @@ typedef struct toile_garment_binding {
 #define TOILE_GARMENT "toile.garment/1"
 typedef struct toile_garment {
     uint32_t size, reserved;
-    toile_status (*bind)(toile_instance *, const toile_body *, const toile_garment_package *,
-                         toile_job *, toile_garment_binding *out); /* [worker] */
+    toile_status (*bind)(toile_instance*, const toile_body*, const toile_garment_package*,
+                         toile_job*, toile_garment_binding* out); /* [worker] */
     /* positions F32X3 (nv): where plain skinning would have the cloth in this pose.  [frame] */
-    toile_status (*targets)(toile_instance *, const toile_body_state *, toile_view_mut positions);
+    toile_status (*targets)(toile_instance*, const toile_body_state*, toile_view_mut positions);
 } toile_garment;
 
 #ifdef __cplusplus

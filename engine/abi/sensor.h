@@ -12,12 +12,12 @@ extern "C" {
 typedef struct toile_sensor {
     uint32_t size, reserved;
     /* Opens what stands behind the scheme of a source URI ("" = the first device). [worker] */
-    toile_status (*open)(toile_instance *, const char *uri, toile_job *);
-    uint32_t (*stream_count)(toile_instance *);                              /* [main]  */
-    toile_status (*describe)(toile_instance *, uint32_t stream, toile_stream *out); /* [main] */
+    toile_status (*open)(toile_instance*, const char* uri, toile_job*);
+    uint32_t (*stream_count)(toile_instance*);                                     /* [main]  */
+    toile_status (*describe)(toile_instance*, uint32_t stream, toile_stream* out); /* [main] */
     /* Never blocks. TOILE_OK fills out with views that live until release.        [frame] */
-    toile_status (*poll)(toile_instance *, uint32_t stream, toile_frame *out);
-    void (*release)(toile_instance *, const toile_frame *); /* [frame] */
+    toile_status (*poll)(toile_instance*, uint32_t stream, toile_frame* out);
+    void (*release)(toile_instance*, const toile_frame*); /* [frame] */
 } toile_sensor;
 
 #ifdef __cplusplus

@@ -37,7 +37,7 @@ enum class Part : std::uint8_t {
 /// One shape component: displacement of every vertex and joint per unit coefficient, metres.
 struct ShapeComponent {
     std::string name;
-    std::vector<Vec3f> vertex_offsets;           ///< (nv)
+    std::vector<Vec3f> vertex_offsets; ///< (nv)
     std::array<Vec3f, kJointCount> joint_offsets;
 };
 

@@ -71,9 +71,8 @@ nlohmann::json parse_json(std::string_view text, const std::string& name) {
 nlohmann::json parse_json_file(const std::filesystem::path& file, std::size_t max_bytes) {
     std::error_code code;
     if (!std::filesystem::is_regular_file(file, code))
-        throw JsonError(file.string(), std::filesystem::exists(file, code)
-                                           ? "is not a regular file"
-                                           : "no such file");
+        throw JsonError(file.string(), std::filesystem::exists(file, code) ? "is not a regular file"
+                                                                           : "no such file");
     const auto bytes = std::filesystem::file_size(file, code);
     if (code || bytes > max_bytes)
         throw JsonError(file.string(), "larger than the " + std::to_string(max_bytes) +

@@ -21,7 +21,8 @@ class JsonError : public FileError {
 
 /// Parses a whole file; duplicate keys, trailing text, bad UTF-8 and files over `max_bytes` are
 /// refused. \throw JsonError
-nlohmann::json parse_json_file(const std::filesystem::path& file, std::size_t max_bytes = 16u << 20);
+nlohmann::json parse_json_file(const std::filesystem::path& file,
+                               std::size_t max_bytes = 16u << 20);
 
 /// The same for text already in memory; `name` stands for the file in errors. \throw JsonError
 nlohmann::json parse_json(std::string_view text, const std::string& name);

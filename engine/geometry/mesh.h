@@ -19,16 +19,16 @@ struct TriangleMesh {
 /// The same surface cut along texture seams, for drawing and for files that need it.
 /// Triangle i of `triangles` is triangle i of the welded mesh.
 struct SeamedLayout {
-    std::vector<std::uint32_t> welded;  ///< (nr) welded vertex of each seamed vertex
-    std::vector<Vec2f> texcoords;       ///< (nr) origin at the top left, as in glTF
-    std::vector<Triangle> triangles;    ///< (nf) into the seamed vertices
+    std::vector<std::uint32_t> welded; ///< (nr) welded vertex of each seamed vertex
+    std::vector<Vec2f> texcoords;      ///< (nr) origin at the top left, as in glTF
+    std::vector<Triangle> triangles;   ///< (nf) into the seamed vertices
 };
 
 /// What `check_topology` found; all zero for a closed, oriented 2-manifold in one piece.
 struct TopologyReport {
-    std::size_t out_of_range = 0;          ///< triangles with an index >= nv
-    std::size_t degenerate = 0;            ///< triangles that name a vertex twice
-    std::size_t non_finite = 0;            ///< vertices with NaN or infinity
+    std::size_t out_of_range = 0; ///< triangles with an index >= nv
+    std::size_t degenerate = 0;   ///< triangles that name a vertex twice
+    std::size_t non_finite = 0;   ///< vertices with NaN or infinity
     std::size_t unused_vertices = 0;
     std::size_t boundary_edges = 0;        ///< edges with one triangle
     std::size_t non_manifold_edges = 0;    ///< edges with more than two triangles
@@ -60,7 +60,7 @@ void vertex_normals(std::span<const Vec3f> positions, std::span<const Triangle> 
 /// Neighbours of each vertex in compressed rows, sorted: those of v are
 /// `neighbours[first[v] .. first[v + 1])`.
 struct VertexAdjacency {
-    std::vector<std::uint32_t> first;      ///< (nv + 1)
+    std::vector<std::uint32_t> first; ///< (nv + 1)
     std::vector<std::uint32_t> neighbours;
 };
 [[nodiscard]] VertexAdjacency vertex_adjacency(std::size_t vertex_count,

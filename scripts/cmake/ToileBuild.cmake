@@ -83,10 +83,12 @@ function(toile_add_plugin name)
     endif()
 endfunction()
 
-# toile_add_test(name SOURCES ... LINK ... [LABEL label]): one GoogleTest program; ctest lists its
-# cases one by one.
+# toile_add_test(name SOURCES ... LINK ... [LABEL label] [SANITIZED]): one GoogleTest program; ctest
+# lists its cases one by one. SANITIZED ones are also built and run by scripts/test under the
+# sanitize preset (target sanitized_tests, label sanitized).
+add_custom_target(sanitized_tests)
 function(toile_add_test name)
-    cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LINK" ${ARGN})
+    cmake_parse_arguments(ARG "SANITIZED" "LABEL;TIMEOUT" "SOURCES;LINK" ${ARGN})
     if(NOT ARG_LABEL)
         set(ARG_LABEL unit)
     endif()
@@ -97,6 +99,10 @@ function(toile_add_test name)
     target_include_directories(${name}_test PRIVATE "${CMAKE_SOURCE_DIR}/tests")
     target_link_libraries(${name}_test PRIVATE ${ARG_LINK} toile_test_support
                           GTest::gmock GTest::gtest_main)
+    if(ARG_SANITIZED)
+        set(ARG_LABEL sanitized) # a list would not survive gtest_discover_tests
+        add_dependencies(sanitized_tests ${name}_test)
+    endif()
     gtest_discover_tests(${name}_test TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
                          PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -1,4 +1,5 @@
-// Real data sets that are not part of the repository; tests that use them skip where they are absent.
+// Real data sets that are not part of the repository; tests that use them skip where they are
+// absent.
 #pragma once
 
 #include <cstdlib>
@@ -20,6 +21,6 @@ inline std::filesystem::path shared_data(const char* set) {
 } // namespace toile::test
 
 /// Defines `name` as the folder of a data set, or skips the test saying which set is missing.
-#define TOILE_SHARED_DATA_OR_SKIP(name, set)                                        \
-    const std::filesystem::path name = ::toile::test::shared_data(set);             \
+#define TOILE_SHARED_DATA_OR_SKIP(name, set)                                                       \
+    const std::filesystem::path name = ::toile::test::shared_data(set);                            \
     if (name.empty()) GTEST_SKIP() << "shared data set '" << (set) << "' is not here"
