@@ -36,6 +36,7 @@ void save_image(const Image& image, const std::filesystem::path& file);
 
 /// 16-bit PNG, millimetres by default (`scale` units a metre), 0 = unknown. \throw Error
 [[nodiscard]] DepthImage load_depth(const std::filesystem::path& file, double scale = 1000.0);
+/// Depths outside 1 .. 65535 units are written as unknown.
 void save_depth(const DepthImage& depth, const std::filesystem::path& file, double scale = 1000.0);
 
 } // namespace toile::imaging
