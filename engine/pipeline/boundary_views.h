@@ -1,0 +1,63 @@
+// Engine data as the plugin boundary wants it: C structs over memory that these objects keep.
+#pragma once
+
+#include "abi/toile.h"
+#include "body/body_model.h"
+#include "garment/package.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace toile::pipeline {
+
+/// View of `count` tightly packed elements of one TOILE_* format.
+template <class T>
+[[nodiscard]] toile_view view_of(std::span<const T> data, std::uint32_t format) {
+    return {data.data(), static_cast<std::uint32_t>(data.size()), sizeof(T), format, 0};
+}
+template <class T>
+[[nodiscard]] toile_view_mut view_of(std::span<T> data, std::uint32_t format) {
+    return {data.data(), static_cast<std::uint32_t>(data.size()), sizeof(T), format, 0};
+}
+
+/// A body model as a `toile_body`. Not movable: the struct points into it.
+class BoundaryBody {
+  public:
+    /// `revision` must differ from that of every other body alive.
+    BoundaryBody(std::shared_ptr<const body::BodyModel> model, std::uint64_t revision);
+    BoundaryBody(const BoundaryBody&) = delete;
+    BoundaryBody& operator=(const BoundaryBody&) = delete;
+
+    [[nodiscard]] const toile_body& abi() const { return abi_; }
+    [[nodiscard]] const body::BodyModel& model() const { return *model_; }
+
+  private:
+    std::shared_ptr<const body::BodyModel> model_;
+    std::vector<std::uint8_t> parts_;
+    std::vector<toile_landmark> landmarks_;
+    std::vector<toile_measurement> measurements_;
+    toile_body abi_{};
+};
+
+/// One size of a garment package as a `toile_garment_package`. Not movable.
+class BoundaryGarment {
+  public:
+    /// `made_on` may be null; it and `package` are kept.
+    BoundaryGarment(std::shared_ptr<const garment::GarmentPackage> package,
+                    const garment::GarmentSize& size, std::shared_ptr<const BoundaryBody> made_on);
+    BoundaryGarment(const BoundaryGarment&) = delete;
+    BoundaryGarment& operator=(const BoundaryGarment&) = delete;
+
+    [[nodiscard]] const toile_garment_package& abi() const { return abi_; }
+    [[nodiscard]] const garment::GarmentPackage& package() const { return *package_; }
+    [[nodiscard]] const garment::GarmentSize& size() const { return size_; }
+
+  private:
+    std::shared_ptr<const garment::GarmentPackage> package_;
+    const garment::GarmentSize& size_;
+    std::shared_ptr<const BoundaryBody> made_on_;
+    toile_garment_package abi_{};
+};
+
+} // namespace toile::pipeline
