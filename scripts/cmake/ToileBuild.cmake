@@ -45,6 +45,9 @@ function(toile_add_layer name)
     endif()
 endfunction()
 
+# Target stock_plugins: every loadable module of plugins/.
+add_custom_target(stock_plugins)
+
 # toile_add_plugin(name [LINK target...]): plugins/<name> as an algorithm library (every .cpp but
 # entry.cpp), a loadable module (entry.cpp) laid out as bin/plugins/<name>/ with its manifest, and
 # a test program from tests/*_test.cpp.
@@ -74,7 +77,7 @@ function(toile_add_plugin name)
         "${CMAKE_SOURCE_DIR}/scripts/cmake/plugin_exports.map")
     set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${out}")
     configure_file(plugin.json "${out}/plugin.json" COPYONLY)
-    set_property(GLOBAL APPEND PROPERTY TOILE_PLUGINS ${name})
+    add_dependencies(stock_plugins ${name})
 
     file(GLOB tests CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/tests/*_test.cpp")
     if(tests)
