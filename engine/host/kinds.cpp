@@ -1,0 +1,72 @@
+#include "host/kinds.h"
+
+#include <array>
+
+namespace toile::host {
+namespace {
+
+constexpr const char* kSensor[] = {"open", "stream_count", "describe", "poll", "release"};
+constexpr const char* kBodySource[] = {"describe", "begin", "feed", "result", "end"};
+constexpr const char* kScanner[] = {"begin", "feed", "finish"};
+constexpr const char* kSkinning[] = {"bind", "pose"};
+constexpr const char* kResizer[] = {"resize"};
+constexpr const char* kGarment[] = {"bind", "targets"};
+constexpr const char* kCloth[] = {"set_body", "add_garment", "remove_garment", "step"};
+constexpr const char* kTool[] = {"describe", "run"};
+constexpr const char* kParameters[] = {"count", "describe", "get", "set"};
+constexpr const char* kState[] = {"save", "load"};
+constexpr const char* kDebugDraw[] = {"lines"};
+
+template <std::size_t n>
+constexpr KindInfo table(const char* id, const char* const (&calls)[n]) {
+    return {id, 8 + static_cast<std::uint32_t>(n * sizeof(void (*)())), calls};
+}
+
+constexpr std::array kKinds{
+    table(TOILE_SENSOR, kSensor),   table(TOILE_BODY_SOURCE, kBodySource),
+    table(TOILE_SCANNER, kScanner), table(TOILE_SKINNING, kSkinning),
+    table(TOILE_RESIZER, kResizer), table(TOILE_GARMENT, kGarment),
+    table(TOILE_CLOTH, kCloth),     table(TOILE_TOOL, kTool),
+};
+constexpr std::array kExtensions{
+    table(TOILE_PARAMETERS, kParameters),
+    table(TOILE_STATE, kState),
+    table(TOILE_DEBUG_DRAW, kDebugDraw),
+};
+constexpr std::array kHostExtensions{TOILE_THREAD_POOL};
+
+// ABI 1.0 is the base: a table that grows in a later minor keeps its old base size here.
+static_assert(table(TOILE_SENSOR, kSensor).base_size == sizeof(toile_sensor));
+static_assert(table(TOILE_BODY_SOURCE, kBodySource).base_size == sizeof(toile_body_source));
+static_assert(table(TOILE_SCANNER, kScanner).base_size == sizeof(toile_scanner));
+static_assert(table(TOILE_SKINNING, kSkinning).base_size == sizeof(toile_skinning));
+static_assert(table(TOILE_RESIZER, kResizer).base_size == sizeof(toile_resizer));
+static_assert(table(TOILE_GARMENT, kGarment).base_size == sizeof(toile_garment));
+static_assert(table(TOILE_CLOTH, kCloth).base_size == sizeof(toile_cloth));
+static_assert(table(TOILE_TOOL, kTool).base_size == sizeof(toile_tool));
+static_assert(table(TOILE_PARAMETERS, kParameters).base_size == sizeof(toile_parameters));
+static_assert(table(TOILE_STATE, kState).base_size == sizeof(toile_state));
+static_assert(table(TOILE_DEBUG_DRAW, kDebugDraw).base_size == sizeof(toile_debug_draw));
+
+} // namespace
+
+std::span<const KindInfo> known_kinds() {
+    return kKinds;
+}
+
+std::span<const KindInfo> known_extensions() {
+    return kExtensions;
+}
+
+std::span<const char* const> host_extensions() {
+    return kHostExtensions;
+}
+
+const KindInfo* find_kind(std::string_view id) {
+    for (const auto list : {known_kinds(), known_extensions()})
+        for (const KindInfo& kind : list)
+            if (id == kind.id) return &kind;
+    return nullptr;
+}
+
+} // namespace toile::host

@@ -1,0 +1,33 @@
+// plugin.json: what a plugin says of itself, readable without running its code (gate 1).
+#pragma once
+
+#include "host/refusal.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace toile::host {
+
+struct Manifest {
+    std::filesystem::path file; ///< the plugin.json; empty for a plugin linked in
+    std::string id;             ///< "toile.bullet_cloth"
+    std::string version;        ///< semver
+    std::uint32_t abi_major = 0;
+    std::uint32_t abi_minor = 0;
+    std::filesystem::path library;     ///< beside the manifest
+    std::vector<std::string> provides; ///< kinds: "toile.cloth/1"
+    std::vector<std::string> needs;    ///< host extensions: "toile.thread_pool/1"
+    std::vector<std::string> schemes;  ///< source URI schemes: "kinect-log"
+    int priority = 0;                  ///< the highest of a kind serves it by default
+    std::string licence;               ///< SPDX expression, or empty
+
+    [[nodiscard]] bool provides_kind(const std::string& kind) const;
+    [[nodiscard]] bool serves_scheme(const std::string& scheme) const;
+};
+
+/// Reads and checks a manifest; the library is not looked at. \throw PluginRefused
+[[nodiscard]] Manifest read_manifest(const std::filesystem::path& file);
+
+} // namespace toile::host
