@@ -1,0 +1,20 @@
+// The files of shaders/, embedded by the build. Each program puts `common` before its own.
+#pragma once
+
+namespace toile::render::shaders {
+
+extern const char* const k_common;
+extern const char* const k_mesh_vertex;
+extern const char* const k_depth_vertex;
+extern const char* const k_depth_fragment;
+extern const char* const k_floor_vertex;
+extern const char* const k_surface_fragment;
+extern const char* const k_screen_vertex;
+extern const char* const k_visibility_fragment;
+extern const char* const k_blur_fragment;
+extern const char* const k_shading;
+extern const char* const k_mesh_fragment;
+extern const char* const k_background_fragment;
+extern const char* const k_resolve_fragment;
+
+} // namespace toile::render::shaders
