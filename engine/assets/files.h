@@ -14,11 +14,14 @@ struct ImportLimits {
     std::size_t max_vertices = 2'000'000;
     std::size_t max_triangles = 4'000'000;
     std::size_t max_texture_side = 8192; ///< pixels
+    /// Of everything decoded from one file: attributes, morph targets, textures.
+    std::size_t max_decoded_bytes = 1u << 30;
 };
 
-/// Reads .glb and .gltf (tinygltf), .obj, .ply, .fbx (assimp). Metres are assumed except where the
-/// format says otherwise (FBX: its unit scale factor). Skins come out checked: see check_skins.
-/// \throw Error naming the file and what is wrong with it
+/// Reads .glb and .gltf (tinygltf), .ply and .fbx (assimp) and .obj (one mesh per group, vertices
+/// in the order of the file). Metres are assumed except where the format says otherwise (FBX: its
+/// unit scale factor). Skins come out checked: see check_skins. \throw Error naming the file and
+/// what is wrong with it
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const ImportLimits& limits = {});
 
 /// Writes .glb, .obj or .ply. A .glb holds everything; .obj and .ply geometry only.

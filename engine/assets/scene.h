@@ -55,7 +55,8 @@ struct Primitive {
 
 struct Mesh {
     std::string name;
-    std::vector<Primitive> primitives;
+    std::vector<Primitive> primitives; ///< all with the same morph targets
+    std::vector<float> morph_weights;  ///< (targets) at rest, or empty for zeros
 };
 
 struct Skin {

@@ -1,0 +1,60 @@
+#include "assets/files.h"
+
+#include "assets/formats.h"
+#include "assets/skins.h"
+#include "core/bytes.h"
+
+#include <algorithm>
+#include <limits>
+#include <new>
+
+namespace toile::assets {
+namespace {
+
+std::string lower_extension(const std::filesystem::path& file) {
+    std::string text = file.extension().string();
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return text;
+}
+
+} // namespace
+
+Scene load_scene(const std::filesystem::path& file, const ImportLimits& limits) {
+    const std::string extension = lower_extension(file);
+    const std::string name = file.string();
+    Budget budget(limits, name);
+    SkinRules rules;
+    Scene scene;
+    try {
+        if (extension == ".glb" || extension == ".gltf") {
+            scene = read_gltf(file, budget);
+        } else if (extension == ".obj") {
+            scene = read_obj(file, budget);
+        } else if (extension == ".ply" || extension == ".fbx") {
+            scene = read_with_assimp(file, budget);
+            rules.sum_tolerance = std::numeric_limits<double>::infinity();
+        } else {
+            throw FileError(name, "unknown kind of 3D file (.glb, .gltf, .fbx, .obj and .ply are "
+                                  "read)");
+        }
+    } catch (const std::bad_alloc&) {
+        throw FileError(name, "needs more memory than there is");
+    }
+    check_skins(scene, name, rules);
+    return scene;
+}
+
+void save_scene(const Scene& scene, const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    if (extension == ".glb")
+        write_bytes(file, write_glb(scene));
+    else if (extension == ".obj")
+        write_text(file, write_obj(scene));
+    else if (extension == ".ply")
+        write_bytes(file, write_ply(scene));
+    else
+        throw FileError(file.string(), "3D files are written as .glb, .obj or .ply");
+}
+
+} // namespace toile::assets

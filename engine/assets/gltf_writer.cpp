@@ -1,0 +1,371 @@
+// Scene to one .glb: nodes, meshes, skins, morph targets, materials, textures, animations.
+#include "assets/formats.h"
+#include "assets/skins.h"
+
+#include <cmath>
+#include <cstring>
+#include <sstream>
+#include <tiny_gltf.h>
+
+namespace toile::assets {
+namespace {
+
+using tinygltf::Value;
+
+template <int Rows>
+std::vector<double> numbers(const Eigen::Matrix<float, Rows, 1>& v) {
+    std::vector<double> result;
+    for (int k = 0; k < Rows; ++k)
+        result.push_back(static_cast<double>(v[k]));
+    return result;
+}
+
+class Writer {
+  public:
+    explicit Writer(const Scene& scene) : scene_(scene) { model_.buffers.resize(1); }
+
+    std::vector<std::uint8_t> run() {
+        model_.asset.version = "2.0";
+        model_.asset.generator = "Toile";
+        write_textures();
+        write_materials();
+        for (std::size_t i = 0; i < scene_.meshes.size(); ++i)
+            write_mesh(scene_.meshes[i], i);
+        for (const Skin& skin : scene_.skins)
+            write_skin(skin);
+        write_nodes();
+        for (const Animation& animation : scene_.animations)
+            write_animation(animation);
+        write_extensions();
+        if (model_.buffers[0].data.empty()) model_.buffers.clear();
+
+        std::ostringstream stream;
+        tinygltf::TinyGLTF writer;
+        if (!writer.WriteGltfSceneToStream(&model_, stream, false, true))
+            throw Error("a GLB cannot be written");
+        const std::string text = stream.str();
+        return {text.begin(), text.end()};
+    }
+
+  private:
+    [[noreturn]] static void fail(const std::string& what) {
+        throw Error("a scene cannot be written: " + what);
+    }
+
+    int add_view(const void* data, std::size_t size, int target) {
+        auto& bytes = model_.buffers[0].data;
+        bytes.resize((bytes.size() + 3) / 4 * 4, 0);
+        tinygltf::BufferView view;
+        view.buffer = 0;
+        view.byteOffset = bytes.size();
+        view.byteLength = size;
+        view.target = target;
+        const auto* begin = static_cast<const std::uint8_t*>(data);
+        bytes.insert(bytes.end(), begin, begin + size);
+        model_.bufferViews.push_back(view);
+        return static_cast<int>(model_.bufferViews.size()) - 1;
+    }
+
+    // `components` numbers an element; bounds are written where glTF wants them.
+    int add_accessor(const void* data, std::size_t count, int components, int component_type,
+                     int type, int target, bool bounds) {
+        const auto width = static_cast<std::size_t>(components);
+        const std::size_t size = component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 2 : 4;
+        tinygltf::Accessor accessor;
+        accessor.bufferView = add_view(data, count * width * size, target);
+        accessor.componentType = component_type;
+        accessor.count = count;
+        accessor.type = type;
+        if (component_type == TINYGLTF_COMPONENT_TYPE_FLOAT) {
+            const auto* values = static_cast<const float*>(data);
+            for (std::size_t i = 0; i < count * width; ++i)
+                if (!std::isfinite(values[i])) fail("a number is not finite");
+            for (std::size_t k = 0; bounds && k < width; ++k) {
+                float low = values[k];
+                float high = values[k];
+                for (std::size_t i = k; i < count * width; i += width) {
+                    low = std::min(low, values[i]);
+                    high = std::max(high, values[i]);
+                }
+                accessor.minValues.push_back(static_cast<double>(low));
+                accessor.maxValues.push_back(static_cast<double>(high));
+            }
+        }
+        model_.accessors.push_back(std::move(accessor));
+        return static_cast<int>(model_.accessors.size()) - 1;
+    }
+
+    int add_vectors(const std::vector<Vec3f>& values, bool bounds) {
+        static_assert(sizeof(Vec3f) == 12);
+        return add_accessor(values.data(), values.size(), 3, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                            TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER, bounds);
+    }
+
+    void write_textures() {
+        if (scene_.textures.empty()) return;
+        tinygltf::Sampler sampler;
+        sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+        sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+        model_.samplers.push_back(sampler);
+        for (const Texture& from : scene_.textures) {
+            const std::vector<std::uint8_t> png = imaging::encode_png(from.image);
+            tinygltf::Image image;
+            image.name = from.name;
+            image.mimeType = "image/png";
+            image.bufferView = add_view(png.data(), png.size(), 0);
+            tinygltf::Texture texture;
+            texture.sampler = 0;
+            texture.source = static_cast<int>(model_.images.size());
+            model_.images.push_back(std::move(image));
+            model_.textures.push_back(texture);
+        }
+    }
+
+    int texture(int index) const {
+        if (index < kNone || index >= static_cast<int>(scene_.textures.size()))
+            fail("a material names a texture that does not exist");
+        return index;
+    }
+
+    void write_materials() {
+        for (const Material& from : scene_.materials) {
+            tinygltf::Material material;
+            material.name = from.name;
+            material.pbrMetallicRoughness.baseColorFactor = numbers<4>(from.base_color);
+            material.pbrMetallicRoughness.metallicFactor = static_cast<double>(from.metallic);
+            material.pbrMetallicRoughness.roughnessFactor = static_cast<double>(from.roughness);
+            material.pbrMetallicRoughness.baseColorTexture.index = texture(from.base_color_texture);
+            material.normalTexture.index = texture(from.normal_texture);
+            material.normalTexture.scale = static_cast<double>(from.normal_scale);
+            material.doubleSided = from.double_sided;
+            if (!from.sheen_color.isZero(0.0f)) {
+                Value::Array color;
+                for (const double c : numbers<3>(from.sheen_color))
+                    color.emplace_back(c);
+                Value::Object sheen;
+                sheen["sheenColorFactor"] = Value(color);
+                sheen["sheenRoughnessFactor"] = Value(static_cast<double>(from.sheen_roughness));
+                material.extensions["KHR_materials_sheen"] = Value(sheen);
+                sheen_ = true;
+            }
+            model_.materials.push_back(std::move(material));
+        }
+    }
+
+    void check_primitive(const Primitive& p, const std::string& who) const {
+        const std::size_t count = p.positions.size();
+        if (count == 0 || p.triangles.empty()) fail(who + " is empty");
+        if ((!p.normals.empty() && p.normals.size() != count) ||
+            (!p.texcoords.empty() && p.texcoords.size() != count))
+            fail(who + " does not have one normal and texture coordinate per vertex");
+        for (const Triangle& t : p.triangles)
+            for (const std::uint32_t v : t)
+                if (v >= count) fail(who + " has an index out of range");
+        if (p.material < kNone || p.material >= static_cast<int>(scene_.materials.size()))
+            fail(who + " names a material that does not exist");
+        for (const MorphTarget& morph : p.morphs)
+            if (morph.positions.size() != count ||
+                (!morph.normals.empty() && morph.normals.size() != count))
+                fail(who + ": morph target '" + morph.name +
+                     "' does not have one offset per vertex");
+    }
+
+    void write_mesh(const Mesh& from, std::size_t index) {
+        const std::string who =
+            "mesh " + (from.name.empty() ? "#" + std::to_string(index) : "'" + from.name + "'");
+        if (from.primitives.empty()) fail(who + " has no primitives");
+        tinygltf::Mesh mesh;
+        mesh.name = from.name;
+        for (const Primitive& primitive : from.primitives) {
+            check_primitive(primitive, who);
+            if (primitive.morphs.size() != from.primitives.front().morphs.size())
+                fail(who + ": its primitives differ in their morph targets");
+            mesh.primitives.push_back(convert(primitive));
+        }
+        if (!from.primitives.front().morphs.empty()) {
+            Value::Array names;
+            for (const MorphTarget& morph : from.primitives.front().morphs)
+                names.emplace_back(morph.name);
+            Value::Object extras;
+            extras["targetNames"] = Value(names);
+            mesh.extras = Value(extras);
+            for (const float w : from.morph_weights)
+                mesh.weights.push_back(static_cast<double>(w));
+        }
+        model_.meshes.push_back(std::move(mesh));
+    }
+
+    tinygltf::Primitive convert(const Primitive& from) {
+        tinygltf::Primitive primitive;
+        primitive.mode = TINYGLTF_MODE_TRIANGLES;
+        primitive.material = from.material;
+        primitive.attributes["POSITION"] = add_vectors(from.positions, true);
+        if (!from.normals.empty())
+            primitive.attributes["NORMAL"] = add_vectors(unit(from.normals), false);
+        if (!from.texcoords.empty())
+            primitive.attributes["TEXCOORD_0"] = add_accessor(
+                from.texcoords.data(), from.texcoords.size(), 2, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                TINYGLTF_TYPE_VEC2, TINYGLTF_TARGET_ARRAY_BUFFER, false);
+        if (!from.joints.empty()) {
+            primitive.attributes["JOINTS_0"] = add_accessor(
+                from.joints.data(), from.joints.size(), 4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                TINYGLTF_TYPE_VEC4, TINYGLTF_TARGET_ARRAY_BUFFER, false);
+            primitive.attributes["WEIGHTS_0"] = add_accessor(
+                from.weights.data(), from.weights.size(), 4, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                TINYGLTF_TYPE_VEC4, TINYGLTF_TARGET_ARRAY_BUFFER, false);
+        }
+        primitive.indices = add_accessor(from.triangles.data(), 3 * from.triangles.size(), 1,
+                                         TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
+                                         TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, false);
+        for (const MorphTarget& morph : from.morphs) {
+            std::map<std::string, int> target;
+            target["POSITION"] = add_vectors(morph.positions, true);
+            if (!morph.normals.empty()) target["NORMAL"] = add_vectors(morph.normals, false);
+            primitive.targets.push_back(std::move(target));
+        }
+        write_variants(from, primitive);
+        return primitive;
+    }
+
+    // glTF wants unit normals, also where a vertex has none of its own.
+    static std::vector<Vec3f> unit(std::vector<Vec3f> normals) {
+        for (Vec3f& n : normals) {
+            const float length = n.norm();
+            if (!(length > 1e-12f))
+                n = Vec3f::UnitY();
+            else if (std::abs(length - 1.0f) > 1e-5f)
+                n /= length;
+        }
+        return normals;
+    }
+
+    void write_variants(const Primitive& from, tinygltf::Primitive& primitive) {
+        std::map<int, Value::Array> variants_of; // by material
+        for (std::size_t v = 0; v < from.variant_materials.size(); ++v) {
+            const int material = from.variant_materials[v];
+            if (material == kNone) continue;
+            if (material < 0 || material >= static_cast<int>(scene_.materials.size()) ||
+                v >= scene_.variants.size())
+                fail("a variant names a material that does not exist");
+            variants_of[material].emplace_back(static_cast<int>(v));
+        }
+        if (variants_of.empty()) return;
+        Value::Array mappings;
+        for (const auto& [material, variants] : variants_of) {
+            Value::Object mapping;
+            mapping["material"] = Value(material);
+            mapping["variants"] = Value(variants);
+            mappings.emplace_back(mapping);
+        }
+        Value::Object extension;
+        extension["mappings"] = Value(mappings);
+        primitive.extensions["KHR_materials_variants"] = Value(extension);
+    }
+
+    void write_skin(const Skin& from) {
+        tinygltf::Skin skin;
+        skin.name = from.name;
+        skin.joints = from.joints;
+        std::vector<Eigen::Matrix4f> matrices = from.inverse_bind;
+        for (Eigen::Matrix4f& m : matrices)
+            m.row(3) = Eigen::RowVector4f(0, 0, 0, 1);
+        skin.inverseBindMatrices =
+            add_accessor(matrices.data(), matrices.size(), 16, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                         TINYGLTF_TYPE_MAT4, 0, false);
+        model_.skins.push_back(std::move(skin));
+    }
+
+    void write_nodes() {
+        tinygltf::Scene root;
+        for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+            const Node& from = scene_.nodes[i];
+            tinygltf::Node node;
+            node.name = from.name;
+            node.mesh = from.mesh;
+            node.skin = from.skin;
+            if (!from.translation.isZero(0.0f)) node.translation = numbers<3>(from.translation);
+            if (from.scale != Vec3f::Ones()) node.scale = numbers<3>(from.scale);
+            if (from.rotation.coeffs() != Quatf::Identity().coeffs())
+                node.rotation = unit_rotation(from.rotation.coeffs());
+            const bool bare = node.name.empty() && node.mesh == kNone && node.scale.empty() &&
+                              node.translation.empty() && node.rotation.empty();
+            if (bare) node.translation = {0.0, 0.0, 0.0}; // tinygltf writes a bare node as null
+            if (from.parent == kNone)
+                root.nodes.push_back(static_cast<int>(i));
+            else
+                model_.nodes[static_cast<std::size_t>(from.parent)].children.push_back(
+                    static_cast<int>(i));
+            model_.nodes.push_back(std::move(node));
+        }
+        if (root.nodes.empty()) return;
+        model_.scenes.push_back(std::move(root));
+        model_.defaultScene = 0;
+    }
+
+    static std::vector<double> unit_rotation(Vec4f q) {
+        if (std::abs(q.norm() - 1.0f) > 1e-6f) q.normalize();
+        return numbers<4>(q);
+    }
+
+    void write_animation(const Animation& from) {
+        tinygltf::Animation animation;
+        animation.name = from.name;
+        for (const Channel& channel : from.channels) {
+            if (channel.times.empty() || channel.values.size() != channel.times.size() ||
+                channel.node < 0 || channel.node >= static_cast<int>(scene_.nodes.size()) ||
+                channel.path == Channel::Path::invalid)
+                fail("animation '" + from.name + "' has a channel without node, times or values");
+            const bool rotation = channel.path == Channel::Path::rotation;
+            std::vector<float> values;
+            for (const Vec4f& v : channel.values)
+                for (int k = 0; k < (rotation ? 4 : 3); ++k)
+                    values.push_back(rotation ? v[k] / v.norm() : v[k]);
+            tinygltf::AnimationSampler sampler;
+            sampler.input =
+                add_accessor(channel.times.data(), channel.times.size(), 1,
+                             TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, 0, true);
+            sampler.output =
+                add_accessor(values.data(), channel.values.size(), rotation ? 4 : 3,
+                             TINYGLTF_COMPONENT_TYPE_FLOAT,
+                             rotation ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3, 0, false);
+            tinygltf::AnimationChannel out;
+            out.sampler = static_cast<int>(animation.samplers.size());
+            out.target_node = channel.node;
+            out.target_path = rotation                                     ? "rotation"
+                              : channel.path == Channel::Path::translation ? "translation"
+                                                                           : "scale";
+            animation.samplers.push_back(std::move(sampler));
+            animation.channels.push_back(std::move(out));
+        }
+        if (!animation.channels.empty()) model_.animations.push_back(std::move(animation));
+    }
+
+    void write_extensions() {
+        if (sheen_) model_.extensionsUsed.emplace_back("KHR_materials_sheen");
+        if (scene_.variants.empty()) return;
+        model_.extensionsUsed.emplace_back("KHR_materials_variants");
+        Value::Array variants;
+        for (const std::string& name : scene_.variants) {
+            Value::Object variant;
+            variant["name"] = Value(name);
+            variants.emplace_back(variant);
+        }
+        Value::Object extension;
+        extension["variants"] = Value(variants);
+        model_.extensions["KHR_materials_variants"] = Value(extension);
+    }
+
+    const Scene& scene_;
+    tinygltf::Model model_;
+    bool sheen_ = false;
+};
+
+} // namespace
+
+std::vector<std::uint8_t> write_glb(const Scene& scene) {
+    Scene checked = scene;
+    check_skins(checked, "scene to be written");
+    return Writer(checked).run();
+}
+
+} // namespace toile::assets
