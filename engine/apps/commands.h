@@ -16,4 +16,7 @@ struct GlobalOptions {
     bool verbose = false;                              ///< --verbose
 };
 
+/// view
+void add_view_commands(CLI::App& app, const GlobalOptions& options);
+
 } // namespace toile::apps
