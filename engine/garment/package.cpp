@@ -1,0 +1,95 @@
+#include "garment/package.h"
+
+#include "core/bytes.h"
+#include "garment/manifest_reader.h"
+#include "garment/package_checks.h"
+#include "garment/package_files.h"
+#include "garment/size_reader.h"
+
+#include <algorithm>
+
+namespace toile::garment {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kMaxManifestBytes = 16u << 20;
+
+std::string read_manifest_text(const PackageFiles& files) {
+    std::error_code code;
+    if (!fs::exists(files.root() / "garment.json", code))
+        throw PackageError({FaultCode::not_found, files.shown("garment.json") +
+                                                      ": no such file; a package has a "
+                                                      "garment.json at its top"});
+    try {
+        const auto bytes =
+            read_bytes(files.resolve("garment.json", "garment.json"), kMaxManifestBytes);
+        return {bytes.begin(), bytes.end()};
+    } catch (const FileError& e) {
+        throw PackageError({FaultCode::json, e.what()});
+    }
+}
+
+/// The body the package was made on; nothing (with a fault) when there is no such avatar.
+std::optional<body::BodyModel> find_body(const Manifest& manifest, const std::string& shown,
+                                         Faults& faults) {
+    std::optional<body::BodyModel> out;
+    if (manifest.made_on.empty()) return out;
+    try {
+        out = body::load_body_model(body::find_avatar(manifest.made_on));
+    } catch (const Error& e) {
+        faults.push_back({FaultCode::made_on, shown + ": /made_on: " + e.what()});
+    }
+    return out;
+}
+
+GarmentPackage read_package(const fs::path& source, const PackageLimits& limits, Faults& faults) {
+    GarmentPackage package;
+    package.source = source;
+    attempt(faults, FaultCode::json, [&] {
+        const PackageFiles files(source, limits);
+        const std::string shown = files.shown("garment.json");
+        package.manifest = read_manifest(read_manifest_text(files), shown, faults);
+        const auto body = find_body(package.manifest, shown, faults);
+        for (const SizeEntry& entry : package.manifest.sizes) {
+            GarmentSize size;
+            if (entry.mesh.empty() || !read_size_meshes(files, entry, size, faults, package.notes))
+                continue;
+            const std::string mesh = files.shown(entry.mesh);
+            check_simulation(size, mesh, limits, faults);
+            check_unit(size, mesh, body ? &body->rest : nullptr, faults);
+            package.sizes.push_back(std::move(size));
+        }
+        check_across_sizes(package, shown, faults);
+    });
+    return package;
+}
+
+} // namespace
+
+const GarmentSize& GarmentPackage::size(const std::string& name) const {
+    const auto found = std::find_if(sizes.begin(), sizes.end(),
+                                    [&name](const GarmentSize& s) { return s.entry.name == name; });
+    if (found != sizes.end()) return *found;
+    std::string known;
+    for (const GarmentSize& s : sizes)
+        known += (known.empty() ? "" : ", ") + s.entry.name;
+    throw Error("garment '" + manifest.id + "' has no size '" + name + "'; its sizes: " + known);
+}
+
+std::shared_ptr<const GarmentPackage> load_package(const fs::path& folder_or_zip,
+                                                   const PackageLimits& limits) {
+    Faults faults;
+    auto package = std::make_shared<GarmentPackage>(read_package(folder_or_zip, limits, faults));
+    if (!faults.empty()) throw PackageError(faults.front());
+    return package;
+}
+
+Faults check_package(const fs::path& folder_or_zip, const PackageLimits& limits,
+                     std::vector<std::string>* notes) {
+    Faults faults;
+    const GarmentPackage package = read_package(folder_or_zip, limits, faults);
+    if (notes != nullptr) *notes = package.notes;
+    return faults;
+}
+
+} // namespace toile::garment
