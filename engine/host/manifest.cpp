@@ -89,10 +89,14 @@ void read_values(JsonObject& root, Manifest& out) {
     out.version = root.text("version");
     if (!is_semver(out.version))
         throw root.error("version", "'" + out.version + "' must read like 1.2.3");
-    const std::string library = root.text("library");
-    if (library.empty() || library.find('/') != std::string::npos || library == "..")
-        throw root.error("library", "must be the name of a file beside the manifest");
-    out.library = out.file.parent_path() / library;
+    const auto beside = [&](const char* key) {
+        const std::string name = root.text(key);
+        if (name.empty() || name.find('/') != std::string::npos || name == "..")
+            throw root.error(key, "must be the name of a file beside the manifest");
+        return out.file.parent_path() / name;
+    };
+    out.library = beside("library");
+    if (root.has("sample")) out.sample = beside("sample");
     out.provides = root.texts("provides");
     if (root.has("needs")) out.needs = root.texts("needs");
     if (root.has("schemes")) out.schemes = root.texts("schemes");
@@ -133,7 +137,7 @@ Manifest read_manifest(const std::filesystem::path& file) {
         // A misspelt key is told before the missing one that it was meant to be.
         for (const std::string& key : root.keys()) {
             constexpr const char* known[] = {"id",    "version", "abi",      "library", "provides",
-                                             "needs", "schemes", "priority", "licence"};
+                                             "needs", "schemes", "priority", "licence", "sample"};
             if (std::none_of(std::begin(known), std::end(known),
                              [&](const char* k) { return key == k; }))
                 throw PluginRefused(Refusal::manifest_unknown_key, name,

@@ -21,6 +21,7 @@ struct Manifest {
     std::vector<std::string> needs;    ///< host extensions: "toile.thread_pool/1"
     std::vector<std::string> schemes;  ///< source URI schemes: "kinect-log"
     int priority = 0;                  ///< the highest of a kind serves it by default
+    std::filesystem::path sample;      ///< a short recording beside the manifest, or empty
     std::string licence;               ///< SPDX expression, or empty
 
     [[nodiscard]] bool provides_kind(const std::string& kind) const;

@@ -1,5 +1,6 @@
 // toile-plugin-trial open|contract MANIFEST: the child of host/trial.cpp. Says on descriptor 3
 // where it is ("at ..."), what is wrong ("refused REASON TEXT") or that nothing is ("good").
+#include "host/contract.h"
 #include "host/instance.h"
 
 #include <csignal>
@@ -27,7 +28,12 @@ int run(const std::string& mode, const char* file) {
         say("at making an instance");
         Services services(2);
         { const Instance instance(plugin, services); }
-        (void)mode;
+        if (mode == "contract")
+            for (const ContractCase& rule : contract_cases()) {
+                if (!applies(rule, plugin->manifest())) continue;
+                say("at the rule '" + std::string(rule.name) + "'");
+                run_contract_case(rule, plugin);
+            }
         say("at deinit");
         plugin->entry().deinit();
     } catch (const PluginRefused& e) {

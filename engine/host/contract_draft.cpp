@@ -1,0 +1,59 @@
+// Rules of the kinds that are still drafts: that wrong calls come back with a text.
+#include "host/contract_bench.h"
+
+namespace toile::host {
+namespace {
+
+using PluginPtr = std::shared_ptr<const Plugin>;
+
+void sensor_refuses(const PluginPtr& plugin) {
+    Bench bench(plugin);
+    bench.activate();
+    const auto& table = bench.table<toile_sensor>();
+    bench.fails("open", "for a file that is not there",
+                [&](auto* i) { return table.open(i, "/no/such/file.contract", nullptr); });
+    auto frame = sized<toile_frame>();
+    bench.fails("poll", "before open", [&](auto* i) { return table.poll(i, 0, &frame); });
+}
+
+void scanner_refuses(const PluginPtr& plugin) {
+    Bench bench(plugin);
+    bench.activate();
+    const auto& table = bench.table<toile_scanner>();
+    bench.fails("feed", "before begin", [&](auto* i) { return table.feed(i, nullptr, 0); });
+    bench.fails("finish", "without a sink",
+                [&](auto* i) { return table.finish(i, nullptr, nullptr); });
+}
+
+void resizer_refuses(const PluginPtr& plugin) {
+    Bench bench(plugin);
+    bench.activate();
+    bench.fails("resize", "without a request", [&](auto* i) {
+        return bench.table<toile_resizer>().resize(i, nullptr, {}, nullptr);
+    });
+}
+
+void tool_describes(const PluginPtr& plugin) {
+    Bench bench(plugin);
+    bench.activate();
+    auto info = sized<toile_tool_info>();
+    bench.ok("describe", [&](auto* i) { return bench.table<toile_tool>().describe(i, &info); });
+    bench.rule(info.command != nullptr && info.command[0] != '\0' && info.summary != nullptr &&
+                   info.example != nullptr,
+               "describe: no command, summary or example");
+}
+
+constexpr ContractCase kCases[] = {
+    {TOILE_SENSOR, "sensor: wrong calls are refused with a text", &sensor_refuses},
+    {TOILE_SCANNER, "scanner: wrong calls are refused with a text", &scanner_refuses},
+    {TOILE_RESIZER, "resizer: wrong calls are refused with a text", &resizer_refuses},
+    {TOILE_TOOL, "tool: describes its command", &tool_describes},
+};
+
+} // namespace
+
+std::span<const ContractCase> draft_cases() {
+    return kCases;
+}
+
+} // namespace toile::host
