@@ -18,5 +18,7 @@ struct GlobalOptions {
 
 /// view
 void add_view_commands(CLI::App& app, const GlobalOptions& options);
+/// plugin list, plugin check
+void add_plugin_commands(CLI::App& app, const GlobalOptions& options);
 
 } // namespace toile::apps

@@ -13,35 +13,6 @@ std::string with_text(const std::string& what, const std::string& text) {
 
 } // namespace
 
-std::string status_text(toile_status status) {
-    switch (status) {
-    case TOILE_OK:
-        return "TOILE_OK";
-    case TOILE_NO_NEW_DATA:
-        return "TOILE_NO_NEW_DATA";
-    case TOILE_END_OF_STREAM:
-        return "TOILE_END_OF_STREAM";
-    case TOILE_CANCELLED:
-        return "TOILE_CANCELLED";
-    case TOILE_E_ARGUMENT:
-        return "TOILE_E_ARGUMENT";
-    case TOILE_E_UNSUPPORTED:
-        return "TOILE_E_UNSUPPORTED";
-    case TOILE_E_DEVICE:
-        return "TOILE_E_DEVICE";
-    case TOILE_E_NUMERIC:
-        return "TOILE_E_NUMERIC";
-    case TOILE_E_CAPACITY:
-        return "TOILE_E_CAPACITY";
-    case TOILE_E_IO:
-        return "TOILE_E_IO";
-    case TOILE_E_INTERNAL:
-        return "TOILE_E_INTERNAL";
-    default:
-        return "status " + std::to_string(status);
-    }
-}
-
 Instance::Instance(std::shared_ptr<const Plugin> plugin, Services& services)
     : plugin_(std::move(plugin)), host_(services, plugin_->id()) {
     create();

@@ -11,9 +11,6 @@
 
 namespace toile::host {
 
-/// Text of a status: "TOILE_E_IO".
-[[nodiscard]] std::string status_text(toile_status status);
-
 /// Owns the instance; deactivates and destroys it at the end. Not copied, not moved.
 class Instance {
   public:

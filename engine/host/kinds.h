@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace toile::host {
@@ -22,6 +23,9 @@ struct KindInfo {
 [[nodiscard]] std::span<const char* const> host_extensions();
 /// Kinds and extensions; null when unknown.
 [[nodiscard]] const KindInfo* find_kind(std::string_view id);
+
+/// Text of a status: "TOILE_E_IO".
+[[nodiscard]] std::string status_text(toile_status status);
 
 /// Id of a table's type: KindOf<toile_skinning>::id.
 template <class Table>

@@ -150,4 +150,15 @@ Manifest read_manifest(const std::filesystem::path& file) {
     return out;
 }
 
+std::vector<std::filesystem::path> manifests_in(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> out;
+    std::error_code code;
+    for (const auto& item : std::filesystem::directory_iterator(folder, code)) {
+        const std::string name = item.path().filename().string();
+        if (name == "plugin.json" || name.ends_with(".plugin.json")) out.push_back(item.path());
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
 } // namespace toile::host

@@ -31,4 +31,7 @@ struct Manifest {
 /// Reads and checks a manifest; the library is not looked at. \throw PluginRefused
 [[nodiscard]] Manifest read_manifest(const std::filesystem::path& file);
 
+/// Manifests of one folder, sorted: `plugin.json` and `<word>.plugin.json`.
+[[nodiscard]] std::vector<std::filesystem::path> manifests_in(const std::filesystem::path& folder);
+
 } // namespace toile::host

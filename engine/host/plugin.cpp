@@ -1,5 +1,6 @@
 #include "host/plugin.h"
 
+#include "host/kinds.h"
 #include "host/library_file.h"
 
 #include <algorithm>
@@ -98,7 +99,7 @@ void init_entry(const toile_entry& entry, const Manifest& manifest, const std::s
     }
     if (status < 0)
         throw PluginRefused(Refusal::init_failed, shown,
-                            "entry's init failed with status " + std::to_string(status));
+                            "entry's init failed with " + status_text(status));
 }
 
 // Gate 3 for the descriptor: whole, and saying the same as plugin.json.

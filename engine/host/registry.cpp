@@ -36,23 +36,15 @@ std::vector<std::filesystem::path> environment_folders() {
     return out;
 }
 
-bool is_manifest(const std::filesystem::path& file) {
-    const std::string name = file.filename().string();
-    return name == "plugin.json" || name.ends_with(".plugin.json");
-}
-
 // Manifests of a folder itself and of its direct sub-folders, sorted by path.
 std::vector<std::filesystem::path> find_manifests(const std::filesystem::path& root) {
-    std::vector<std::filesystem::path> out;
-    const auto collect = [&](const std::filesystem::path& folder) {
-        std::error_code code;
-        for (const auto& item : std::filesystem::directory_iterator(folder, code))
-            if (is_manifest(item.path())) out.push_back(item.path());
-    };
-    collect(root);
+    std::vector<std::filesystem::path> out = manifests_in(root);
     std::error_code code;
-    for (const auto& item : std::filesystem::directory_iterator(root, code))
-        if (item.is_directory(code)) collect(item.path());
+    for (const auto& item : std::filesystem::directory_iterator(root, code)) {
+        if (!item.is_directory(code)) continue;
+        const auto inner = manifests_in(item.path());
+        out.insert(out.end(), inner.begin(), inner.end());
+    }
     std::sort(out.begin(), out.end());
     return out;
 }

@@ -12,9 +12,9 @@
 namespace toile::host {
 
 struct RegistryOptions {
-    std::vector<std::filesystem::path> folders; ///< --plugins; looked at first
-    bool environment = true;                    ///< then the folders of TOILE_PLUGIN_PATH (a:b)
-    bool beside_program = true;                 ///< then `plugins` beside the program
+    std::vector<std::filesystem::path> folders = {}; ///< --plugins; looked at first
+    bool environment = true;    ///< then the folders of TOILE_PLUGIN_PATH (a:b)
+    bool beside_program = true; ///< then `plugins` beside the program
     /// Libraries of the first two come from elsewhere: they are tried in a child process before
     /// they are opened here. False opens them at once.
     bool trial = true;

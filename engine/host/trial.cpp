@@ -148,19 +148,41 @@ void judge(const Outcome& outcome, const Manifest& manifest, double timeout_s) {
                                           std::to_string(WEXITSTATUS(status)) + ")");
 }
 
-void run(const Manifest& manifest, double timeout_s, const char* mode) {
-    const auto program = program_folder() / "toile-plugin-trial";
-    judge(Child(program, manifest, mode).wait(timeout_s), manifest, timeout_s);
-}
-
 } // namespace
 
-void try_opening(const Manifest& manifest, double timeout_s) {
-    run(manifest, timeout_s, "open");
+std::filesystem::path trial_program() {
+    return program_folder() / "toile-plugin-trial";
 }
 
-void try_contract(const Manifest& manifest, double timeout_s) {
-    run(manifest, timeout_s, "contract");
+void try_opening(const Manifest& manifest, double timeout_s, const std::filesystem::path& program) {
+    judge(Child(program, manifest, "open").wait(timeout_s), manifest, timeout_s);
+}
+
+void try_contract(const Manifest& manifest, double timeout_s,
+                  const std::filesystem::path& program) {
+    judge(Child(program, manifest, "contract").wait(timeout_s), manifest, timeout_s);
+}
+
+std::vector<std::filesystem::path> manifests_of(const std::filesystem::path& path) {
+    const std::string shown = path.string();
+    std::error_code code;
+    if (std::filesystem::is_directory(path, code)) {
+        auto found = manifests_in(path);
+        if (!found.empty()) return found;
+        throw PluginRefused(Refusal::manifest_unreadable, shown, "holds no plugin.json");
+    }
+    if (path.extension() == ".json") return {path};
+    if (!std::filesystem::exists(path, code))
+        throw PluginRefused(Refusal::library_missing, shown, "no such file");
+    // A library: whoever names it. A manifest that cannot be read is told about itself.
+    std::vector<std::filesystem::path> out;
+    const auto folder = path.has_parent_path() ? path.parent_path() : ".";
+    for (const auto& file : manifests_in(folder))
+        if (read_manifest(file).library.filename() == path.filename()) out.push_back(file);
+    if (out.empty())
+        throw PluginRefused(Refusal::manifest_unreadable, shown,
+                            "no plugin.json beside it names this library");
+    return out;
 }
 
 } // namespace toile::host
