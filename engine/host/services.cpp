@@ -6,13 +6,21 @@
 #include <atomic>
 #include <cstring>
 #include <mutex>
+#include <optional>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 namespace toile::host {
 
 struct Services::Arena {
-    explicit Arena(int threads) : arena(threads) {}
+    explicit Arena(int threads) : arena(threads) {
+        // More threads than cores are given only when asked for by name.
+        if (threads > tbb::this_task_arena::max_concurrency())
+            more.emplace(tbb::global_control::max_allowed_parallelism,
+                         static_cast<std::size_t>(threads));
+    }
+    std::optional<tbb::global_control> more;
     tbb::task_arena arena;
 };
 
