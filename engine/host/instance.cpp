@@ -1,5 +1,6 @@
 #include "host/instance.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace toile::host {
@@ -101,8 +102,8 @@ void Instance::fetch_table(const KindInfo& kind, const void* table) {
         throw PluginRefused(Refusal::table_short, plugin_->shown(),
                             std::string("table of '") + kind.id + "' has " + std::to_string(size) +
                                 " bytes, at least " + std::to_string(kind.base_size) + " wanted");
-    std::vector<void*> copy(kind.base_size / sizeof(void*));
-    std::memcpy(copy.data(), table, kind.base_size);
+    std::vector<void*> copy(kind.size / sizeof(void*));
+    std::memcpy(copy.data(), table, std::min(size, kind.size));
     for (std::size_t call = 0; call < (kind.base_size - kHeaderBytes) / sizeof(void*); ++call)
         if (copy[call + kHeaderBytes / sizeof(void*)] == nullptr)
             throw PluginRefused(Refusal::call_missing, plugin_->shown(),

@@ -17,9 +17,13 @@ constexpr const char* kParameters[] = {"count", "describe", "get", "set"};
 constexpr const char* kState[] = {"save", "load"};
 constexpr const char* kDebugDraw[] = {"lines"};
 
+// `n` calls now, the first `base` of them in ABI 1.0.
 template <std::size_t n>
-constexpr KindInfo table(const char* id, const char* const (&calls)[n]) {
-    return {id, 8 + static_cast<std::uint32_t>(n * sizeof(void (*)())), calls};
+constexpr KindInfo table(const char* id, const char* const (&calls)[n], std::size_t base = n) {
+    constexpr std::size_t head = 2 * sizeof(std::uint32_t);
+    constexpr std::size_t call = sizeof(void (*)());
+    return {id, static_cast<std::uint32_t>(head + base * call),
+            static_cast<std::uint32_t>(head + n * call), calls};
 }
 
 constexpr std::array kKinds{
@@ -35,18 +39,18 @@ constexpr std::array kExtensions{
 };
 constexpr std::array kHostExtensions{TOILE_THREAD_POOL};
 
-// ABI 1.0 is the base: a table that grows in a later minor keeps its old base size here.
-static_assert(table(TOILE_SENSOR, kSensor).base_size == sizeof(toile_sensor));
-static_assert(table(TOILE_BODY_SOURCE, kBodySource).base_size == sizeof(toile_body_source));
-static_assert(table(TOILE_SCANNER, kScanner).base_size == sizeof(toile_scanner));
-static_assert(table(TOILE_SKINNING, kSkinning).base_size == sizeof(toile_skinning));
-static_assert(table(TOILE_RESIZER, kResizer).base_size == sizeof(toile_resizer));
-static_assert(table(TOILE_GARMENT, kGarment).base_size == sizeof(toile_garment));
-static_assert(table(TOILE_CLOTH, kCloth).base_size == sizeof(toile_cloth));
-static_assert(table(TOILE_TOOL, kTool).base_size == sizeof(toile_tool));
-static_assert(table(TOILE_PARAMETERS, kParameters).base_size == sizeof(toile_parameters));
-static_assert(table(TOILE_STATE, kState).base_size == sizeof(toile_state));
-static_assert(table(TOILE_DEBUG_DRAW, kDebugDraw).base_size == sizeof(toile_debug_draw));
+// A table that grows in a later minor names its calls of ABI 1.0 above: table(id, calls, base).
+static_assert(table(TOILE_SENSOR, kSensor).size == sizeof(toile_sensor));
+static_assert(table(TOILE_BODY_SOURCE, kBodySource).size == sizeof(toile_body_source));
+static_assert(table(TOILE_SCANNER, kScanner).size == sizeof(toile_scanner));
+static_assert(table(TOILE_SKINNING, kSkinning).size == sizeof(toile_skinning));
+static_assert(table(TOILE_RESIZER, kResizer).size == sizeof(toile_resizer));
+static_assert(table(TOILE_GARMENT, kGarment).size == sizeof(toile_garment));
+static_assert(table(TOILE_CLOTH, kCloth).size == sizeof(toile_cloth));
+static_assert(table(TOILE_TOOL, kTool).size == sizeof(toile_tool));
+static_assert(table(TOILE_PARAMETERS, kParameters).size == sizeof(toile_parameters));
+static_assert(table(TOILE_STATE, kState).size == sizeof(toile_state));
+static_assert(table(TOILE_DEBUG_DRAW, kDebugDraw).size == sizeof(toile_debug_draw));
 
 } // namespace
 

@@ -14,6 +14,7 @@ namespace toile::host {
 struct KindInfo {
     const char* id;           ///< "toile.skinning/1"
     std::uint32_t base_size;  ///< bytes of its table in ABI 1.0: the least a plugin may have
+    std::uint32_t size;       ///< bytes of its table in this build
     const char* const* calls; ///< their names, in the table's order
 };
 

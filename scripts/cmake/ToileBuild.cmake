@@ -76,7 +76,11 @@ function(toile_add_plugin name)
     set_property(TARGET ${name} APPEND PROPERTY LINK_DEPENDS
         "${CMAKE_SOURCE_DIR}/scripts/cmake/plugin_exports.map")
     set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${out}")
-    configure_file(plugin.json "${out}/plugin.json" COPYONLY)
+    file(GLOB beside CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}"
+         "${CMAKE_CURRENT_SOURCE_DIR}/plugin.json" "${CMAKE_CURRENT_SOURCE_DIR}/sample.*")
+    foreach(file ${beside})
+        configure_file("${file}" "${out}/${file}" COPYONLY)
+    endforeach()
     add_dependencies(stock_plugins ${name})
 
     file(GLOB tests CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/tests/*_test.cpp")
