@@ -1,0 +1,368 @@
+#include "bullet_cloth/contacts.h"
+
+#include "abi/body.h"
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace toile::bullet_cloth {
+namespace {
+
+static_assert(kBodyJoints == TOILE_JOINT_COUNT);
+
+/// Parent of each joint in the order of abi/body.h; the hips are their own.
+constexpr std::array<std::uint8_t, kBodyJoints> kParent{
+    0,  0,  1,  2,  3,  4,  3,  6,  7,  8,  3,  10, 11, 12, 0,  14, 15, 16, 0,  18, 19, 20};
+
+/// Joints that move a vertex noticeably, and those next to them.
+JointMask covered_parts(const std::array<std::uint16_t, 4>& joints,
+                        const std::array<float, 4>& weights) {
+    constexpr float kNoticeable = 0.05f;
+    JointMask moved = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (weights[k] > kNoticeable) {
+            moved |= 1u << joints[k];
+        }
+    }
+    JointMask mask = moved;
+    for (std::size_t j = 0; j < kBodyJoints; ++j) {
+        if ((moved >> j) & 1u) {
+            mask |= 1u << kParent[j];
+        }
+        if ((moved >> kParent[j]) & 1u) {
+            mask |= 1u << j;
+        }
+    }
+    return mask;
+}
+
+constexpr float kNearSkin = 0.025f; ///< m, where the place on the body is kept up to date
+constexpr float kTouching = 0.012f; ///< m, where a plane may push before the next refresh
+
+/// Could a sample at p, moving at v, come within `distance` of the plane in `time` seconds?
+bool is_near(const Vec4& normal, const Vec4& velocity, const Vec4& p, const Vec4& v,
+             float distance, float time) {
+    const float height = normal.dot(p) - normal.w();
+    const float closing = velocity.w() - normal.dot(v);
+    return height - std::max(0.0f, closing) * time < distance;
+}
+
+Vec4 direction(const Vec4& normal) { return {normal.x(), normal.y(), normal.z(), 0.0f}; }
+
+float signed_distance(const MovingBody& body, const Vec4& p, const SurfacePoint& at) {
+    return (p - at.point).dot(body.normal_at(at));
+}
+
+} // namespace
+
+const Contacts::Plane Contacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), Vec4::Zero()};
+
+Contacts::Contacts(std::span<const Triangle> triangles, std::size_t vertex_count,
+                   std::span<const std::array<std::uint16_t, 4>> joints,
+                   std::span<const std::array<float, 4>> weights)
+    : triangles_(triangles.begin(), triangles.end()), vertex_count_(vertex_count) {
+    if (joints.size() != vertex_count || weights.size() != vertex_count) {
+        throw Error("garment: " + std::to_string(joints.size()) + " joint rows and " +
+                    std::to_string(weights.size()) + " weight rows for " +
+                    std::to_string(vertex_count) + " vertices");
+    }
+    const std::size_t samples = vertex_count + triangles_.size();
+    mask_.resize(samples);
+    for (std::size_t v = 0; v < vertex_count; ++v) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (!(std::abs(weights[v][k]) <= 1.5f) || joints[v][k] >= kBodyJoints) {
+                throw Error("garment: vertex " + std::to_string(v) + " has a bad joint weight");
+            }
+        }
+        mask_[v] = covered_parts(joints[v], weights[v]);
+    }
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        for (const std::uint32_t v : triangles_[t]) {
+            mask_[vertex_count + t] |= mask_[v];
+        }
+    }
+    anchor_.assign(samples, kNone);
+    own_triangle_.assign(samples, kNone);
+    other_triangle_.assign(samples, kNone);
+    own_plane_.assign(samples, kNowhere);
+    other_plane_.assign(samples, kNowhere);
+    for (std::vector<ActivePlane>* list :
+         {&own_vertices_, &other_vertices_, &own_centres_, &other_centres_}) {
+        list->reserve(samples);
+    }
+}
+
+void Contacts::bind(const MovingBody& rest_body, std::span<const Vec3f> start) {
+    constexpr float kAnywhere = 100.0f; // m
+    for (std::size_t s = 0; s < anchor_.size(); ++s) {
+        Vec3f at = Vec3f::Zero();
+        if (s < vertex_count_) {
+            at = start[s];
+        } else {
+            const Triangle& corner = triangles_[s - vertex_count_];
+            at = (start[corner[0]] + start[corner[1]] + start[corner[2]]) / 3.0f;
+        }
+        const Vec4 p(at.x(), at.y(), at.z(), 0.0f);
+        SurfacePoint nearest;
+        for (std::size_t joint = 0; joint < kBodyJoints; ++joint) {
+            const std::uint32_t from =
+                ((mask_[s] >> joint) & 1u) != 0 ? rest_body.start_on(joint, p, kAnywhere, 0.0f)
+                                                : kNone;
+            if (from != kNone) {
+                const SurfacePoint found = rest_body.walk(p, from, mask_[s]);
+                nearest = found.squared < nearest.squared ? found : nearest;
+            }
+        }
+        if (nearest.triangle == kNone) {
+            throw Error("garment: the body has no surface at the joints of sample " +
+                        std::to_string(s));
+        }
+        anchor_[s] = nearest.triangle;
+    }
+    reset();
+}
+
+void Contacts::reset() noexcept {
+    std::copy(anchor_.begin(), anchor_.end(), own_triangle_.begin());
+    std::fill(other_triangle_.begin(), other_triangle_.end(), kNone);
+    std::fill(own_plane_.begin(), own_plane_.end(), kNowhere);
+}
+
+JointMask Contacts::mask_for(std::size_t sample, const MovingBody& body,
+                             std::uint32_t triangle) const noexcept {
+    const JointMask mask = mask_[sample];
+    return ((mask >> body.joint_of(triangle)) & 1u) != 0 ? mask : ~mask;
+}
+
+Contacts::Plane Contacts::plane_at(const MovingBody& body, const Vec4& p,
+                                   const SurfacePoint& at) noexcept {
+    constexpr float kNear = 0.004f; // m, where the direction to the surface says little
+    constexpr float kSlant = 0.5f;
+    Plane plane{body.normal_at(at), body.velocity_at(at)};
+    const float height = (p - at.point).dot(plane.normal);
+    const float distance = std::sqrt(at.squared);
+    if (distance > kNear && std::abs(height) < kSlant * distance) {
+        return kNowhere; // beside the end of what it covers, not over it
+    }
+    plane.velocity.w() = plane.normal.dot(plane.velocity);
+    plane.normal.w() = plane.normal.dot(at.point);
+    return plane;
+}
+
+/// Is another part, or another place of its own, nearer than where the sample has been?
+void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
+                           const ContactSettings& settings, float period,
+                           SurfacePoint& own) noexcept {
+    constexpr float kApart = 0.02f;    // m, between two places worth two contacts
+    constexpr float kOutside = -0.002f; // m, a new place is first met from outside
+    const float own_distance = signed_distance(body, p, own);
+    SurfacePoint other;
+    for (std::size_t joint = 0; joint < kBodyJoints; ++joint) {
+        const std::uint32_t start = body.start_on(joint, p, settings.reach, period);
+        if (start == kNone) {
+            continue;
+        }
+        const SurfacePoint found = body.walk(p, start, mask_for(sample, body, start));
+        if (found.triangle == kNone || found.triangle == own.triangle) {
+            continue;
+        }
+        const bool covers = ((mask_[sample] >> body.joint_of(found.triangle)) & 1u) != 0;
+        if (covers && own_distance > 0.0f && found.squared < 0.9f * own.squared) {
+            own = found;
+        } else if (found.squared < other.squared &&
+                   (found.point - own.point).squaredNorm() > kApart * kApart &&
+                   signed_distance(body, p, found) > kOutside) {
+            other = found;
+        }
+    }
+    if (other_triangle_[sample] == kNone) {
+        other_triangle_[sample] = other.triangle;
+    } else if (other.triangle != kNone) {
+        const SurfacePoint kept = body.walk(p, other_triangle_[sample],
+                                            mask_for(sample, body, other_triangle_[sample]));
+        if (other.squared < kept.squared && signed_distance(body, p, kept) > 0.0f) {
+            other_triangle_[sample] = other.triangle;
+        }
+    }
+}
+
+void Contacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
+                            const SurfacePoint& own, const ContactSettings& settings) noexcept {
+    own_triangle_[sample] = own.triangle;
+    own_plane_[sample] = plane_at(body, p, own);
+    if (other_triangle_[sample] == kNone) {
+        return;
+    }
+    const SurfacePoint other =
+        body.walk(p, other_triangle_[sample], mask_for(sample, body, other_triangle_[sample]));
+    const float forget = 2.0f * settings.reach;
+    const bool gone = other.squared > forget * forget && signed_distance(body, p, other) > 0.0f;
+    if (gone || other.triangle == own.triangle || other.triangle == kNone) {
+        other_triangle_[sample] = kNone;
+        return;
+    }
+    other_triangle_[sample] = other.triangle;
+    other_plane_[sample] = plane_at(body, p, other);
+    // No room between both surfaces: the body runs into itself here.
+    const Plane& plane = other_plane_[sample];
+    const Vec4 lifted = own.point + settings.offset * direction(own_plane_[sample].normal);
+    const bool opposed = direction(plane.normal).dot(direction(own_plane_[sample].normal)) < 0.0f;
+    if (opposed && plane.normal.dot(lifted) - plane.normal.w() < 0.0f) {
+        other_plane_[sample] = kNowhere;
+    }
+}
+
+void Contacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v,
+                              std::uint32_t vertex, const Refresh& when,
+                              const ContactSettings& settings) noexcept {
+    const bool turn = !when.last && vertex % when.phases == when.phase;
+    Plane& plane = own_plane_[vertex];
+    plane.normal.w() += plane.velocity.w() * when.since_last;
+    const bool near = other_triangle_[vertex] != kNone ||
+                      is_near(plane.normal, plane.velocity, p, v, kNearSkin, when.period);
+    if (!turn && !near) {
+        return;
+    }
+    SurfacePoint own = body.walk(p, own_triangle_[vertex], mask_[vertex]);
+    if (own.triangle == kNone) {
+        return; // not a finite position; the world starts the garment anew
+    }
+    if (turn) {
+        look_around(body, p, vertex, settings, when.period, own);
+    }
+    place_sample(body, p, vertex, own, settings);
+}
+
+void Contacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v,
+                              std::size_t triangle, const Refresh& when,
+                              const ContactSettings& settings) noexcept {
+    const std::size_t sample = vertex_count_ + triangle;
+    Plane& plane = own_plane_[sample];
+    plane.normal.w() += plane.velocity.w() * when.since_last;
+    other_plane_[sample].normal.w() += other_plane_[sample].velocity.w() * when.since_last;
+    const bool turn = !when.last && triangle % when.phases == when.phase;
+    const bool near = when.last && (other_triangle_[sample] != kNone ||
+                                    is_near(plane.normal, plane.velocity, p, v, kNearSkin, 0.0f));
+    if (!turn && !near) {
+        return;
+    }
+    SurfacePoint own = body.walk(p, own_triangle_[sample], mask_[sample]);
+    // What a corner found, the centre learns from it.
+    const std::uint32_t told = triangles_[triangle][(triangle + when.phase) % 3];
+    const std::uint32_t heard = own_triangle_[told];
+    if (turn && heard != own.triangle && ((mask_[sample] >> body.joint_of(heard)) & 1u) != 0) {
+        const SurfacePoint there = body.walk(p, heard, mask_[sample]);
+        own = there.squared < own.squared ? there : own;
+    }
+    if (own.triangle == kNone) {
+        return;
+    }
+    if (other_triangle_[sample] == kNone) {
+        other_triangle_[sample] = other_triangle_[told];
+    }
+    place_sample(body, p, sample, own, settings);
+}
+
+void Contacts::list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
+                            std::vector<ActivePlane>& own,
+                            std::vector<ActivePlane>& other) noexcept {
+    const Plane& plane = own_plane_[sample];
+    if (is_near(plane.normal, plane.velocity, p, v, kTouching, until_next)) {
+        own.push_back({static_cast<std::uint32_t>(sample), plane});
+    }
+    if (other_triangle_[sample] != kNone) {
+        other.push_back({static_cast<std::uint32_t>(sample), other_plane_[sample]});
+    }
+}
+
+void Contacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
+                       const Refresh& when, const ContactSettings& settings) noexcept {
+    own_vertices_.clear();
+    other_vertices_.clear();
+    own_centres_.clear();
+    other_centres_.clear();
+    for (std::uint32_t i = 0; i < vertex_count_; ++i) {
+        const Vec4 p = x[i] + when.ahead * v[i];
+        refresh_vertex(body, p, v[i], i, when, settings);
+        list_if_near(p, v[i], i, when.until_next, own_vertices_, other_vertices_);
+    }
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        const Triangle& corner = triangles_[t];
+        const Vec4 speed = (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0f;
+        const Vec4 p =
+            (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f + when.ahead * speed;
+        refresh_centre(body, p, speed, t, when, settings);
+        list_if_near(p, speed, vertex_count_ + t, when.until_next, own_centres_, other_centres_);
+    }
+}
+
+void Contacts::push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
+                           float since, float substep,
+                           const ContactSettings& settings) const noexcept {
+    Vec4& x = particles.x[vertex];
+    const float height = plane.normal.dot(x) - plane.normal.w() - plane.velocity.w() * since;
+    const float push = settings.offset - height;
+    if (push <= 0.0f || particles.w[vertex] <= 0.0f) {
+        return;
+    }
+    const Vec4 normal = direction(plane.normal);
+    x += push * normal;
+    // Motion against the skin in this substep: friction takes from its tangential part.
+    const Vec4 moved = x - particles.q[vertex] - substep * direction(plane.velocity);
+    const float along_normal = moved.dot(normal);
+    const Vec4 slide = moved - along_normal * normal;
+    const float length = slide.norm();
+    const float limit = settings.friction * push;
+    if (length <= settings.static_share * limit) {
+        x -= slide;
+    } else {
+        x -= (limit / length) * slide;
+    }
+    // Being pushed out of the body is no reason to fly off.
+    if (along_normal > 0.0f) {
+        particles.q[vertex] += along_normal * normal;
+    }
+}
+
+void Contacts::push_centre(const Particles& particles, const Triangle& corner, const Plane& plane,
+                           float since, float substep,
+                           const ContactSettings& settings) const noexcept {
+    const Vec4 x = particles.x[corner[0]] + particles.x[corner[1]] + particles.x[corner[2]];
+    const float height =
+        plane.normal.dot(x) / 3.0f - plane.normal.w() - plane.velocity.w() * since;
+    const float push = settings.centre_offset - height;
+    const float weight =
+        particles.w[corner[0]] + particles.w[corner[1]] + particles.w[corner[2]];
+    if (push <= 0.0f || weight <= 0.0f) {
+        return;
+    }
+    const Vec4 normal = direction(plane.normal);
+    const Vec4 q = particles.q[corner[0]] + particles.q[corner[1]] + particles.q[corner[2]];
+    const float moved = normal.dot(x - q) / 3.0f + push - substep * plane.velocity.w();
+    for (const std::uint32_t v : corner) {
+        const Vec4 shift = (3.0f * particles.w[v] / weight) * normal;
+        particles.x[v] += push * shift;
+        if (moved > 0.0f) {
+            particles.q[v] += std::min(moved, push) * shift;
+        }
+    }
+}
+
+void Contacts::resolve(const Particles& particles, float since, float substep,
+                       const ContactSettings& settings) const noexcept {
+    for (const std::vector<ActivePlane>* centres : {&other_centres_, &own_centres_}) {
+        for (const ActivePlane& active : *centres) {
+            push_centre(particles, triangles_[active.sample - vertex_count_], active.plane, since,
+                        substep, settings);
+        }
+    }
+    for (const std::vector<ActivePlane>* vertices : {&other_vertices_, &own_vertices_}) {
+        for (const ActivePlane& active : *vertices) {
+            push_vertex(particles, active.sample, active.plane, since, substep, settings);
+        }
+    }
+}
+
+} // namespace toile::bullet_cloth

@@ -1,0 +1,113 @@
+// Contact of one garment with the moving body: which triangle each sample of the garment lies
+// over, the plane that stands for it between two refreshes, and the push with friction.
+#pragma once
+
+#include "bullet_cloth/moving_body.h"
+
+namespace toile::bullet_cloth {
+
+struct ContactSettings {
+    float offset = 0.004f;        ///< m, vertices are kept this far out
+    float centre_offset = 0.002f; ///< m, and triangle centres
+    float friction = 0.4f;        ///< Coulomb, kinetic
+    float static_share = 1.2f;    ///< static friction over kinetic
+    float reach = 0.05f;          ///< m, other parts are noticed from here
+};
+
+/// One refresh of the contacts among those of a step.
+struct Refresh {
+    float ahead;          ///< s, from the positions given to the moment of the body
+    float since_last;     ///< s, from the body of the last refresh to this one
+    float until_next;     ///< s, how long the planes must serve
+    float period;         ///< s, until a sample's next turn
+    std::uint32_t phase;  ///< whose turn it is: samples with index % phases == phase
+    std::uint32_t phases;
+    bool last;            ///< end of the frame: every sample near the skin, nobody looks around
+};
+
+/// Positions x, those at the start of the substep q (their difference is the motion), and inverse
+/// masses w of a garment's vertices; (nv) each.
+struct Particles {
+    std::span<Vec4> x, q;
+    std::span<const float> w;
+};
+
+/// Samples are the vertices, then the triangle centres. Each sample follows its *own* place on
+/// the body, found by walking from where it was, over the parts that its joints say it covers: it
+/// is kept outside of these however deep it got. Besides it may have one *other* place, a part
+/// that came near (a hand over the skirt, the second thigh), first met from outside. Where
+/// the body runs into itself and no room is left between both, the own place wins.
+class Contacts {
+  public:
+    /// \throw Error when joint rows do not match or no part of the body fits a vertex
+    Contacts(std::span<const Triangle> triangles, std::size_t vertex_count,
+             std::span<const std::array<std::uint16_t, 4>> joints,
+             std::span<const std::array<float, 4>> weights);
+
+    /// Finds each sample's place on the body at rest; `start` (nv) as bound to it.
+    /// \throw Error when the body has no part that a vertex could lie on
+    void bind(const MovingBody& rest_body, std::span<const Vec3f> start);
+    /// Forgets where the samples were; they lie as they were bound.
+    void reset() noexcept;
+
+    /// Walks samples to their places on the body as placed now: vertices near the skin always,
+    /// the rest and the centres when it is their turn, which is when vertices look around for
+    /// other parts too. Then lists whom the planes may touch before the next refresh.
+    void refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
+                 const Refresh& when, const ContactSettings& settings) noexcept;
+
+    /// Pushes everything out, `since` seconds after (or before) the last refresh's body, with
+    /// friction over a substep of `substep` seconds.
+    void resolve(const Particles& particles, float since, float substep,
+                 const ContactSettings& settings) const noexcept;
+
+    [[nodiscard]] std::size_t sample_count() const noexcept { return own_triangle_.size(); }
+    /// Body triangle under a sample; vertices first, then centres.
+    [[nodiscard]] std::uint32_t own_triangle(std::size_t sample) const noexcept {
+        return own_triangle_[sample];
+    }
+    [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_; }
+
+  private:
+    /// Half-space that moves with the skin: n.x - d - un t >= offset.
+    struct Plane {
+        Vec4 normal;   ///< and d
+        Vec4 velocity; ///< and its normal part un
+    };
+    static const Plane kNowhere; ///< never touched
+    struct ActivePlane {
+        std::uint32_t sample;
+        Plane plane;
+    };
+
+    void refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v, std::uint32_t vertex,
+                        const Refresh& when, const ContactSettings& settings) noexcept;
+    void refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v, std::size_t triangle,
+                        const Refresh& when, const ContactSettings& settings) noexcept;
+    void look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
+                     const ContactSettings& settings, float period, SurfacePoint& own) noexcept;
+    void place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
+                      const SurfacePoint& own, const ContactSettings& settings) noexcept;
+    void list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
+                      std::vector<ActivePlane>& own, std::vector<ActivePlane>& other) noexcept;
+    [[nodiscard]] static Plane plane_at(const MovingBody& body, const Vec4& p,
+                                        const SurfacePoint& at) noexcept;
+    [[nodiscard]] JointMask mask_for(std::size_t sample, const MovingBody& body,
+                                     std::uint32_t triangle) const noexcept;
+    void push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
+                     float since, float substep, const ContactSettings& settings) const noexcept;
+    void push_centre(const Particles& particles, const Triangle& corner, const Plane& plane,
+                     float since, float substep, const ContactSettings& settings) const noexcept;
+
+    std::vector<Triangle> triangles_;
+    std::size_t vertex_count_;
+    std::vector<JointMask> mask_;             ///< (samples) parts that it covers
+    std::vector<std::uint32_t> anchor_;       ///< (samples) triangle under it as bound
+    std::vector<std::uint32_t> own_triangle_; ///< (samples)
+    std::vector<std::uint32_t> other_triangle_; ///< (samples) or kNone
+    std::vector<Plane> own_plane_, other_plane_; ///< (samples)
+    /// Planes within reach until the next refresh; capacity (samples).
+    std::vector<ActivePlane> own_vertices_, other_vertices_, own_centres_, other_centres_;
+};
+
+} // namespace toile::bullet_cloth

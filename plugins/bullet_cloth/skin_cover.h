@@ -1,0 +1,28 @@
+// The last look of a frame: body vertices that look through between a garment's samples.
+#pragma once
+
+#include "bullet_cloth/contacts.h"
+
+namespace toile::bullet_cloth {
+
+/// Pairs of a garment triangle and a body vertex under it.
+class SkinCover {
+  public:
+    /// Capacity for a garment of so many triangles.
+    explicit SkinCover(std::size_t triangle_count) { pairs_.reserve(kMostSkin * triangle_count); }
+
+    /// Collects the pairs that are close or worse, from the places found by the contacts.
+    void find(const MovingBody& body, const Contacts& contacts, std::span<const Vec4> x) noexcept;
+    /// Lifts the triangles of those pairs over their body vertices, along the skin's normals.
+    void lift(const MovingBody& body, std::span<const Triangle> triangles, std::span<Vec4> x,
+              std::span<const float> inverse_mass) const noexcept;
+
+  private:
+    static constexpr std::size_t kMostSkin = 6; ///< a triangle's corners and those across its sides
+    struct Pair {
+        std::uint32_t triangle, skin;
+    };
+    std::vector<Pair> pairs_;
+};
+
+} // namespace toile::bullet_cloth
