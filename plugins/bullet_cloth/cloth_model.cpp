@@ -93,7 +93,8 @@ std::array<Vec2f, 3> material_corners(const ClothMesh& mesh, std::size_t t) {
     }
     warp.normalize();
     const Vec3f weft = warp.cross(normal);
-    return {Vec2f(0.0f, 0.0f), Vec2f(ab.dot(weft), ab.dot(warp)), Vec2f(ac.dot(weft), ac.dot(warp))};
+    return {Vec2f(0.0f, 0.0f), Vec2f(ab.dot(weft), ab.dot(warp)),
+            Vec2f(ac.dot(weft), ac.dot(warp))};
 }
 
 std::vector<HalfEdge> half_edges(const ClothMesh& mesh, const Fabric& fabric, ClothModel& model) {
@@ -184,8 +185,8 @@ ClothModel make_cloth_model(const ClothMesh& mesh, const Fabric& fabric, float l
     model.mass.assign(mesh.positions.size(), 0.0f);
     const std::vector<HalfEdge> sides = half_edges(mesh, fabric, model);
     add_springs(sides, model);
-    const auto used = static_cast<float>(std::count_if(model.mass.begin(), model.mass.end(),
-                                                       [](float m) { return m > 0.0f; }));
+    const auto used = static_cast<float>(
+        std::count_if(model.mass.begin(), model.mass.end(), [](float m) { return m > 0.0f; }));
     const float mean_mass = fabric.density * static_cast<float>(model.area) / used;
     for (float& mass : model.mass) {
         mass = mass > 0.0f ? mass : mean_mass;

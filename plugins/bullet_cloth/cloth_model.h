@@ -10,15 +10,15 @@ namespace toile::bullet_cloth {
 
 /// SI units; as toile_fabric of the plugin boundary.
 struct Fabric {
-    float density = 0.2f;        ///< kg/m^2
-    float thickness = 0.0005f;   ///< m
+    float density = 0.2f;         ///< kg/m^2
+    float thickness = 0.0005f;    ///< m
     float stretch_warp = 2000.0f; ///< N/m, force per width per unit strain, along v
     float stretch_weft = 2000.0f; ///< N/m, along u
-    float shear = 300.0f;        ///< N/m
-    float bend_warp = 1e-5f;     ///< N m, bending rigidity per width
-    float bend_weft = 1e-5f;     ///< N m
-    float friction = 0.4f;       ///< Coulomb, against skin
-    float damping = 2.0f;        ///< 1/s, share of relative velocity lost
+    float shear = 300.0f;         ///< N/m
+    float bend_warp = 1e-5f;      ///< N m, bending rigidity per width
+    float bend_weft = 1e-5f;      ///< N m
+    float friction = 0.4f;        ///< Coulomb, against skin
+    float damping = 2.0f;         ///< 1/s, share of relative velocity lost
 };
 
 /// Pulls two vertices to their rest distance.

@@ -31,8 +31,7 @@ void write_out(const GarmentCloth& cloth, const GarmentFrame& frame) {
     std::fill(frame.normals.begin(), frame.normals.end(), Vec3f::Zero());
     for (const Triangle& corner : cloth.triangles()) {
         const Vec3f a = frame.positions[corner[0]];
-        const Vec3f area =
-            (frame.positions[corner[1]] - a).cross(frame.positions[corner[2]] - a);
+        const Vec3f area = (frame.positions[corner[1]] - a).cross(frame.positions[corner[2]] - a);
         for (const std::uint32_t v : corner) {
             frame.normals[v] += area;
         }
@@ -151,9 +150,9 @@ StepResult ClothWorld::check(const StepInput& input) const noexcept {
     }
     for (const GarmentFrame& frame : input.garments) {
         const auto same = [&](const auto& other) { return other.garment == frame.garment; };
-        const auto known = std::find_if(
-            garments_.begin(), garments_.end(),
-            [&](const Entry& entry) { return entry.handle == frame.garment; });
+        const auto known =
+            std::find_if(garments_.begin(), garments_.end(),
+                         [&](const Entry& entry) { return entry.handle == frame.garment; });
         if (known == garments_.end()) {
             return StepResult::unknown_garment;
         }

@@ -13,8 +13,8 @@ namespace {
 static_assert(kBodyJoints == TOILE_JOINT_COUNT);
 
 /// Parent of each joint in the order of abi/body.h; the hips are their own.
-constexpr std::array<std::uint8_t, kBodyJoints> kParent{
-    0,  0,  1,  2,  3,  4,  3,  6,  7,  8,  3,  10, 11, 12, 0,  14, 15, 16, 0,  18, 19, 20};
+constexpr std::array<std::uint8_t, kBodyJoints> kParent{0,  0,  1,  2, 3,  4,  3,  6, 7,  8,  3,
+                                                        10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
 
 /// Joints that move a vertex noticeably, and those next to them.
 JointMask covered_parts(const std::array<std::uint16_t, 4>& joints,
@@ -42,14 +42,16 @@ constexpr float kNearSkin = 0.025f; ///< m, where the place on the body is kept 
 constexpr float kTouching = 0.012f; ///< m, where a plane may push before the next refresh
 
 /// Could a sample at p, moving at v, come within `distance` of the plane in `time` seconds?
-bool is_near(const Vec4& normal, const Vec4& velocity, const Vec4& p, const Vec4& v,
-             float distance, float time) {
+bool is_near(const Vec4& normal, const Vec4& velocity, const Vec4& p, const Vec4& v, float distance,
+             float time) {
     const float height = normal.dot(p) - normal.w();
     const float closing = velocity.w() - normal.dot(v);
     return height - std::max(0.0f, closing) * time < distance;
 }
 
-Vec4 direction(const Vec4& normal) { return {normal.x(), normal.y(), normal.z(), 0.0f}; }
+Vec4 direction(const Vec4& normal) {
+    return {normal.x(), normal.y(), normal.z(), 0.0f};
+}
 
 float signed_distance(const MovingBody& body, const Vec4& p, const SurfacePoint& at) {
     return (p - at.point).dot(body.normal_at(at));
@@ -95,7 +97,7 @@ Contacts::Contacts(std::span<const Triangle> triangles, std::size_t vertex_count
 }
 
 void Contacts::bind(const MovingBody& rest_body, std::span<const Vec3f> start) {
-    constexpr float kAnywhere = 100.0f; // m
+    constexpr float kAnywhere = 1e4f; // m
     for (std::size_t s = 0; s < anchor_.size(); ++s) {
         Vec3f at = Vec3f::Zero();
         if (s < vertex_count_) {
@@ -107,9 +109,9 @@ void Contacts::bind(const MovingBody& rest_body, std::span<const Vec3f> start) {
         const Vec4 p(at.x(), at.y(), at.z(), 0.0f);
         SurfacePoint nearest;
         for (std::size_t joint = 0; joint < kBodyJoints; ++joint) {
-            const std::uint32_t from =
-                ((mask_[s] >> joint) & 1u) != 0 ? rest_body.start_on(joint, p, kAnywhere, 0.0f)
-                                                : kNone;
+            const std::uint32_t from = ((mask_[s] >> joint) & 1u) != 0
+                                           ? rest_body.start_on(joint, p, kAnywhere, 0.0f)
+                                           : kNone;
             if (from != kNone) {
                 const SurfacePoint found = rest_body.walk(p, from, mask_[s]);
                 nearest = found.squared < nearest.squared ? found : nearest;
@@ -155,7 +157,7 @@ Contacts::Plane Contacts::plane_at(const MovingBody& body, const Vec4& p,
 void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
                            const ContactSettings& settings, float period,
                            SurfacePoint& own) noexcept {
-    constexpr float kApart = 0.02f;    // m, between two places worth two contacts
+    constexpr float kApart = 0.02f;     // m, between two places worth two contacts
     constexpr float kOutside = -0.002f; // m, a new place is first met from outside
     const float own_distance = signed_distance(body, p, own);
     SurfacePoint other;
@@ -180,8 +182,8 @@ void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sa
     if (other_triangle_[sample] == kNone) {
         other_triangle_[sample] = other.triangle;
     } else if (other.triangle != kNone) {
-        const SurfacePoint kept = body.walk(p, other_triangle_[sample],
-                                            mask_for(sample, body, other_triangle_[sample]));
+        const SurfacePoint kept =
+            body.walk(p, other_triangle_[sample], mask_for(sample, body, other_triangle_[sample]));
         if (other.squared < kept.squared && signed_distance(body, p, kept) > 0.0f) {
             other_triangle_[sample] = other.triangle;
         }
@@ -189,7 +191,8 @@ void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sa
 }
 
 void Contacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
-                            const SurfacePoint& own, const ContactSettings& settings) noexcept {
+                            const SurfacePoint& own, const ContactSettings& settings,
+                            float period) noexcept {
     own_triangle_[sample] = own.triangle;
     own_plane_[sample] = plane_at(body, p, own);
     if (other_triangle_[sample] == kNone) {
@@ -197,7 +200,7 @@ void Contacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t s
     }
     const SurfacePoint other =
         body.walk(p, other_triangle_[sample], mask_for(sample, body, other_triangle_[sample]));
-    const float forget = 2.0f * settings.reach;
+    const float forget = 2.0f * settings.reach + body.velocity_at(other).norm() * period;
     const bool gone = other.squared > forget * forget && signed_distance(body, p, other) > 0.0f;
     if (gone || other.triangle == own.triangle || other.triangle == kNone) {
         other_triangle_[sample] = kNone;
@@ -209,7 +212,8 @@ void Contacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t s
     const Plane& plane = other_plane_[sample];
     const Vec4 lifted = own.point + settings.offset * direction(own_plane_[sample].normal);
     const bool opposed = direction(plane.normal).dot(direction(own_plane_[sample].normal)) < 0.0f;
-    if (opposed && plane.normal.dot(lifted) - plane.normal.w() < 0.0f) {
+    const bool beneath = own.squared < settings.reach * settings.reach;
+    if (opposed && beneath && plane.normal.dot(lifted) - plane.normal.w() < 0.0f) {
         other_plane_[sample] = kNowhere;
     }
 }
@@ -232,7 +236,7 @@ void Contacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4&
     if (turn) {
         look_around(body, p, vertex, settings, when.period, own);
     }
-    place_sample(body, p, vertex, own, settings);
+    place_sample(body, p, vertex, own, settings, when.period);
 }
 
 void Contacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v,
@@ -262,7 +266,7 @@ void Contacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4&
     if (other_triangle_[sample] == kNone) {
         other_triangle_[sample] = other_triangle_[told];
     }
-    place_sample(body, p, sample, own, settings);
+    place_sample(body, p, sample, own, settings, when.period);
 }
 
 void Contacts::list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
@@ -291,8 +295,7 @@ void Contacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::spa
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
         const Triangle& corner = triangles_[t];
         const Vec4 speed = (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0f;
-        const Vec4 p =
-            (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f + when.ahead * speed;
+        const Vec4 p = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f + when.ahead * speed;
         refresh_centre(body, p, speed, t, when, settings);
         list_if_near(p, speed, vertex_count_ + t, when.until_next, own_centres_, other_centres_);
     }
@@ -330,11 +333,9 @@ void Contacts::push_centre(const Particles& particles, const Triangle& corner, c
                            float since, float substep,
                            const ContactSettings& settings) const noexcept {
     const Vec4 x = particles.x[corner[0]] + particles.x[corner[1]] + particles.x[corner[2]];
-    const float height =
-        plane.normal.dot(x) / 3.0f - plane.normal.w() - plane.velocity.w() * since;
+    const float height = plane.normal.dot(x) / 3.0f - plane.normal.w() - plane.velocity.w() * since;
     const float push = settings.centre_offset - height;
-    const float weight =
-        particles.w[corner[0]] + particles.w[corner[1]] + particles.w[corner[2]];
+    const float weight = particles.w[corner[0]] + particles.w[corner[1]] + particles.w[corner[2]];
     if (push <= 0.0f || weight <= 0.0f) {
         return;
     }

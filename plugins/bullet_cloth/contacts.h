@@ -16,13 +16,13 @@ struct ContactSettings {
 
 /// One refresh of the contacts among those of a step.
 struct Refresh {
-    float ahead;          ///< s, from the positions given to the moment of the body
-    float since_last;     ///< s, from the body of the last refresh to this one
-    float until_next;     ///< s, how long the planes must serve
-    float period;         ///< s, until a sample's next turn
-    std::uint32_t phase;  ///< whose turn it is: samples with index % phases == phase
+    float ahead;         ///< s, from the positions given to the moment of the body
+    float since_last;    ///< s, from the body of the last refresh to this one
+    float until_next;    ///< s, how long the planes must serve
+    float period;        ///< s, until a sample's next turn
+    std::uint32_t phase; ///< whose turn it is: samples with index % phases == phase
     std::uint32_t phases;
-    bool last;            ///< end of the frame: every sample near the skin, nobody looks around
+    bool last; ///< end of the frame: every sample near the skin, nobody looks around
 };
 
 /// Positions x, those at the start of the substep q (their difference is the motion), and inverse
@@ -87,7 +87,8 @@ class Contacts {
     void look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
                      const ContactSettings& settings, float period, SurfacePoint& own) noexcept;
     void place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
-                      const SurfacePoint& own, const ContactSettings& settings) noexcept;
+                      const SurfacePoint& own, const ContactSettings& settings,
+                      float period) noexcept;
     void list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
                       std::vector<ActivePlane>& own, std::vector<ActivePlane>& other) noexcept;
     [[nodiscard]] static Plane plane_at(const MovingBody& body, const Vec4& p,
@@ -101,10 +102,10 @@ class Contacts {
 
     std::vector<Triangle> triangles_;
     std::size_t vertex_count_;
-    std::vector<JointMask> mask_;             ///< (samples) parts that it covers
-    std::vector<std::uint32_t> anchor_;       ///< (samples) triangle under it as bound
-    std::vector<std::uint32_t> own_triangle_; ///< (samples)
-    std::vector<std::uint32_t> other_triangle_; ///< (samples) or kNone
+    std::vector<JointMask> mask_;                ///< (samples) parts that it covers
+    std::vector<std::uint32_t> anchor_;          ///< (samples) triangle under it as bound
+    std::vector<std::uint32_t> own_triangle_;    ///< (samples)
+    std::vector<std::uint32_t> other_triangle_;  ///< (samples) or kNone
     std::vector<Plane> own_plane_, other_plane_; ///< (samples)
     /// Planes within reach until the next refresh; capacity (samples).
     std::vector<ActivePlane> own_vertices_, other_vertices_, own_centres_, other_centres_;

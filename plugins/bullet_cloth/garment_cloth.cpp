@@ -12,7 +12,9 @@ namespace {
 /// How many substeps share one pass of the fabric's damping.
 constexpr std::uint32_t kDampEvery = 4;
 
-Vec4 to_vec4(const Vec3f& p) { return {p.x(), p.y(), p.z(), 0.0f}; }
+Vec4 to_vec4(const Vec3f& p) {
+    return {p.x(), p.y(), p.z(), 0.0f};
+}
 
 std::vector<float> attachments(const GarmentInput& input) {
     const std::size_t count = input.mesh.positions.size();
@@ -59,8 +61,7 @@ GarmentCloth::GarmentCloth(const GarmentInput& input, const MovingBody& rest_bod
                            const Settings& settings)
     : settings_(settings), fabric_(input.fabric), contact_(contact_settings(input, settings)),
       start_(input.mesh.positions.begin(), input.mesh.positions.end()),
-      model_(make_cloth_model(input.mesh, input.fabric,
-                              static_cast<float>(settings.limit_edges))),
+      model_(make_cloth_model(input.mesh, input.fabric, static_cast<float>(settings.limit_edges))),
       attachment_(attachments(input)), inverse_mass_(inverse_masses(model_.mass, attachment_)),
       links_(start_, inverse_mass_, model_.stretch, model_.bend),
       contacts_(input.mesh.triangles, start_.size(), input.joints, input.weights),
@@ -93,14 +94,13 @@ void GarmentCloth::advance(const MovingBody& body, const Interval& interval) noe
     const float length = static_cast<float>(interval.last - interval.first) * interval.substep;
     // The last refresh stood at the end of the last frame or in the middle of the last interval.
     const float since_last = interval.index == 0 ? 0.5f * length : length;
-    const float period = length * static_cast<float>(interval.of);
-    contacts_.refresh(body, x_, v_,
-                      {0.5f * length, since_last, 0.5f * length, period, interval.index,
-                       interval.of, false},
-                      contact_);
+    period_ = length * static_cast<float>(interval.of);
+    contacts_.refresh(
+        body, x_, v_,
+        {0.5f * length, since_last, 0.5f * length, period_, interval.index, interval.of, false},
+        contact_);
     for (std::uint32_t s = interval.first; s < interval.last; ++s) {
-        const float fraction =
-            static_cast<float>(s + 1) / static_cast<float>(interval.count);
+        const float fraction = static_cast<float>(s + 1) / static_cast<float>(interval.count);
         const float since =
             static_cast<float>(s + 1 - interval.first) * interval.substep - 0.5f * length;
         predict(fraction, interval.substep);
@@ -150,10 +150,9 @@ void GarmentCloth::follow_targets(float fraction, float share, float substep) no
         const Vec4 goal = target(i, fraction);
         const float attached = attachment_[i];
         if (attached > 0.0f) {
-            const float rate = static_cast<float>(settings_.pull_rate) * attached /
-                               (1.0f - attached) * substep;
-            const Vec4 moved =
-                x_[i] - q_[i] - share * (target_after_[i] - target_before_[i]);
+            const float rate =
+                static_cast<float>(settings_.pull_rate) * attached / (1.0f - attached) * substep;
+            const Vec4 moved = x_[i] - q_[i] - share * (target_after_[i] - target_before_[i]);
             x_[i] += (rate * rate * (goal - x_[i]) - 2.0f * rate * moved) /
                      (1.0f + 2.0f * rate + rate * rate);
         }
@@ -197,7 +196,7 @@ void GarmentCloth::update_velocities(float substep, bool damp) noexcept {
 void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
     ContactSettings still = contact_;
     still.friction = 0.0f;
-    contacts_.refresh(body, x_, v_, {0.0f, since_last, 0.0f, 0.0f, 0, 1, true}, still);
+    contacts_.refresh(body, x_, v_, {0.0f, since_last, 0.0f, period_, 0, 1, true}, still);
     std::copy(x_.begin(), x_.end(), q_.begin());
     const auto passes = static_cast<int>(settings_.clean_passes);
     cover_.find(body, contacts_, x_);

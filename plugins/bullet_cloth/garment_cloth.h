@@ -73,6 +73,7 @@ class GarmentCloth {
     std::vector<Vec4> x_, q_, v_; ///< positions, those at the start of the substep, velocities
     std::vector<Vec4> target_before_, target_after_;
     float leash_ = 0.0f;
+    float period_ = 0.0f; ///< s, of the frame at hand
 };
 
 } // namespace toile::bullet_cloth

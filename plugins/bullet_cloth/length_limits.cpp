@@ -42,8 +42,8 @@ struct Graph {
 class Paths {
   public:
     explicit Paths(const Graph& graph)
-        : graph_(graph),
-          distance_(graph.first.size() - 1, std::numeric_limits<float>::infinity()) {}
+        : graph_(graph), distance_(graph.first.size() - 1, std::numeric_limits<float>::infinity()) {
+    }
 
     [[nodiscard]] float distance(std::uint32_t vertex) const { return distance_[vertex]; }
     [[nodiscard]] std::span<const std::uint32_t> reached() const { return reached_; }
@@ -114,8 +114,8 @@ std::vector<LengthLimit> make_length_limits(std::size_t vertex_count,
             if (best == start || (k > 0 && apart[best] < 0.5f * reach)) {
                 break;
             }
-            limits.push_back({std::min(start, best), std::max(start, best),
-                              from_start.distance(best)});
+            limits.push_back(
+                {std::min(start, best), std::max(start, best), from_start.distance(best)});
             from_chosen.run(best, reach);
             apart[best] = 0.0f;
             for (const std::uint32_t v : from_start.reached()) {

@@ -36,8 +36,8 @@ std::vector<Link> interleave(std::span<const Link> links) {
         const std::size_t recent = std::min(kApart, order.size());
         return std::any_of(order.end() - static_cast<std::ptrdiff_t>(recent), order.end(),
                            [&](const Link& other) {
-                               return link.a == other.a || link.a == other.b ||
-                                      link.b == other.a || link.b == other.b;
+                               return link.a == other.a || link.a == other.b || link.b == other.a ||
+                                      link.b == other.b;
                            });
     };
     while (order.size() < links.size()) {
@@ -86,8 +86,7 @@ LinkSolver::LinkSolver(std::span<const Vec3f> start, std::span<const float> inve
         for (const Spring& spring : springs) {
             const bool moves = inverse_mass[spring.a] > 0.0f || inverse_mass[spring.b] > 0.0f;
             if (moves && spring.stiffness > 0.0f) {
-                const auto [a, b] =
-                    std::minmax(node_of_vertex[spring.a], node_of_vertex[spring.b]);
+                const auto [a, b] = std::minmax(node_of_vertex[spring.a], node_of_vertex[spring.b]);
                 links.push_back({a, b, &spring});
             }
         }

@@ -9,7 +9,9 @@
 namespace toile::bullet_cloth {
 namespace {
 
-Vec4 to_vec4(const Vec3f& p) { return {p.x(), p.y(), p.z(), 0.0f}; }
+Vec4 to_vec4(const Vec3f& p) {
+    return {p.x(), p.y(), p.z(), 0.0f};
+}
 
 void check(const BodyRest& rest) {
     const std::size_t count = rest.positions.size();
@@ -129,8 +131,7 @@ void MovingBody::choose_seeds(std::span<const Vec3f> rest,
             part.vertices.push_back(members[chosen]);
             part.triangles.push_back(star_[star_first_[members[chosen]]]);
             for (std::size_t i = 0; i < members.size(); ++i) {
-                apart[i] =
-                    std::min(apart[i], (rest[members[i]] - rest[members[chosen]]).norm());
+                apart[i] = std::min(apart[i], (rest[members[i]] - rest[members[chosen]]).norm());
             }
             chosen = static_cast<std::size_t>(std::max_element(apart.begin(), apart.end()) -
                                               apart.begin());

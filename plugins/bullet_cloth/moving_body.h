@@ -17,8 +17,8 @@ using JointMask = std::uint32_t;
 
 /// What never changes of a body. Views are borrowed for the call.
 struct BodyRest {
-    std::span<const Vec3f> positions;    ///< (nv) metres, rest pose
-    std::span<const Triangle> triangles; ///< (nf)
+    std::span<const Vec3f> positions;                     ///< (nv) metres, rest pose
+    std::span<const Triangle> triangles;                  ///< (nf)
     std::span<const std::array<std::uint16_t, 4>> joints; ///< (nv)
     std::span<const std::array<float, 4>> weights;        ///< (nv)
 };
@@ -83,9 +83,9 @@ class MovingBody {
     void compute_normals(std::span<const Vec4> positions, std::span<Vec4> normals) const noexcept;
 
     std::vector<Triangle> triangles_;
-    std::vector<std::uint32_t> across_;       ///< (3 nf)
-    std::vector<std::uint32_t> star_first_;   ///< (nv + 1)
-    std::vector<std::uint32_t> star_;         ///< triangles at each vertex
+    std::vector<std::uint32_t> across_;        ///< (3 nf)
+    std::vector<std::uint32_t> star_first_;    ///< (nv + 1)
+    std::vector<std::uint32_t> star_;          ///< triangles at each vertex
     std::vector<std::uint8_t> triangle_joint_; ///< (nf) joint that moves it most
     std::array<Part, kBodyJoints> parts_;
     std::vector<Vec4> before_, after_, now_;

@@ -4,17 +4,17 @@
 namespace toile::bullet_cloth {
 
 struct Settings {
-    double substep_rate = 540.0;  ///< 1/s
-    double contact_rate = 150.0;  ///< 1/s, refreshes of the contact planes
-    double margin = 0.003;        ///< m, kept free between skin and cloth
-    double limit_edges = 4.0;     ///< reach of the length limits, mesh edges; 0: none
-    double leash = 0.25;          ///< m, farthest a free vertex may be from its target
-    double pull_rate = 12.0;      ///< rad/s, of a vertex with attachment 0.5 about its target
-    double air_drag = 0.3;        ///< 1/s
-    double damping_scale = 1.0;   ///< on the fabric's own damping
-    double friction_scale = 1.0;  ///< on the fabric's own friction
-    double clean_passes = 4.0;    ///< against the full-resolution body, at the end of a frame
-    double gravity = 9.81;        ///< m/s^2, along -Y
+    double substep_rate = 540.0; ///< 1/s
+    double contact_rate = 150.0; ///< 1/s, refreshes of the contact planes
+    double margin = 0.003;       ///< m, kept free between skin and cloth
+    double limit_edges = 4.0;    ///< reach of the length limits, mesh edges; 0: none
+    double leash = 0.25;         ///< m, farthest a free vertex may be from its target
+    double pull_rate = 60.0;     ///< rad/s, of a vertex with attachment 0.5 about its target
+    double air_drag = 0.3;       ///< 1/s
+    double damping_scale = 1.0;  ///< on the fabric's own damping
+    double friction_scale = 1.0; ///< on the fabric's own friction
+    double clean_passes = 4.0;   ///< against the full-resolution body, at the end of a frame
+    double gravity = 9.81;       ///< m/s^2, along -Y
 };
 
 } // namespace toile::bullet_cloth

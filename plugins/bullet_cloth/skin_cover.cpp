@@ -75,8 +75,8 @@ void SkinCover::find(const MovingBody& body, const Contacts& contacts,
     }
 }
 
-void SkinCover::lift(const MovingBody& body, std::span<const Triangle> triangles,
-                     std::span<Vec4> x, std::span<const float> inverse_mass) const noexcept {
+void SkinCover::lift(const MovingBody& body, std::span<const Triangle> triangles, std::span<Vec4> x,
+                     std::span<const float> inverse_mass) const noexcept {
     constexpr float kLeastWeight = 0.05f; // where the corners that may move hold too little
     for (const Pair& pair : pairs_) {
         const Triangle& corner = triangles[pair.triangle];
