@@ -59,6 +59,27 @@ void set_camera(FrameUniforms& frame, const Camera& camera, const Box& visible) 
     frame.subject = with(centre, radius);
 }
 
+void set_touched(FrameUniforms& frame, const Box& visible) {
+    const Vec4f whole(0.0f, 0.0f, frame.target_size.x(), frame.target_size.y());
+    frame.meshes = Vec4f::Zero();
+    if (visible.empty()) return;
+    Vec2f low = Vec2f::Constant(1e30f);
+    Vec2f high = Vec2f::Constant(-1e30f);
+    for (int i = 0; i < 8; ++i) {
+        const Vec4f clip = frame.clip_from_world * with(visible.corner(i), 1.0f);
+        if (clip.w() < frame.range.x()) { // behind the near plane: no bound
+            frame.meshes = whole;
+            return;
+        }
+        const Vec2f pixel = (clip.head<2>() / clip.w() * 0.5f + Vec2f::Constant(0.5f))
+                                .cwiseProduct(frame.target_size.head<2>());
+        low = low.cwiseMin(pixel);
+        high = high.cwiseMax(pixel);
+    }
+    frame.meshes = {std::floor(low.x()) - 2.0f, std::floor(low.y()) - 2.0f,
+                    std::ceil(high.x()) + 2.0f, std::ceil(high.y()) + 2.0f};
+}
+
 void set_lighting(FrameUniforms& frame, const Lighting& lighting) {
     frame.key_direction = with(lighting.key_direction.normalized(), lighting.key_size);
     frame.key_color = with(lighting.key_color);
@@ -77,7 +98,7 @@ void fit_shadow_map(FrameUniforms& frame, const Vec3f& key_direction, const Box&
     const Vec3f across = helper.cross(away).normalized();
     Mat3f R;
     R.row(0) = across;
-    R.row(1) = away.cross(across);
+    R.row(1) = across.cross(away); // up, as the light sees it
     R.row(2) = away;
 
     Vec3f low = Vec3f::Constant(1e30f);

@@ -29,9 +29,11 @@ struct FrameUniforms {
     Vec4f subject;
     Vec4f contact;
     Vec4f occlusion;
+    Vec4f meshes;
+    Vec4f flags;
 };
 // No holes before the last member (behind it alignment may pad).
-static_assert(offsetof(FrameUniforms, occlusion) == (3 * 16 + 16 * 4) * sizeof(float));
+static_assert(offsetof(FrameUniforms, flags) == (3 * 16 + 18 * 4) * sizeof(float));
 
 /// World-aligned bounds; empty when low > high.
 struct Box {
@@ -49,9 +51,11 @@ struct Box {
     }
 };
 
-/// Camera, lights and backdrop. `visible` bounds everything drawn.
+/// Camera. `visible` bounds everything drawn.
 void set_camera(FrameUniforms& frame, const Camera& camera, const Box& visible);
 void set_lighting(FrameUniforms& frame, const Lighting& lighting);
+/// Which pixels of the target (its size must be set) `visible` can touch.
+void set_touched(FrameUniforms& frame, const Box& visible);
 /// Fits the shadow map of `side` texels round what casts shadows.
 void fit_shadow_map(FrameUniforms& frame, const Vec3f& key_direction, const Box& casters, int side);
 

@@ -66,9 +66,13 @@ void GlObject::reset() noexcept {
 namespace {
 
 // In the order of Unit.
-constexpr std::array kSamplers = {
-    "base_color_texture", "normal_texture", "visibility_texture", "camera_picture", "camera_depth",
-    "contact_map",        "surface_depth",  "surface_normal",     "shadow_map",     "drawn"};
+constexpr std::array kSamplers = {"base_color_texture", "normal_texture", "visibility_texture",
+                                  "camera_picture",     "camera_depth",   "contact_map",
+                                  "surface_depth",      "surface_normal", "shadow_map",
+                                  "drawn_surface",      "drawn_normal",   "drawn_depth"};
+
+// Uniform blocks by binding point.
+constexpr std::array kBlocks = {"Frame", "Materials"};
 
 GLuint compile(const GladGLContext& gl, GLenum stage, const std::string& name,
                std::initializer_list<const char*> sources) {
@@ -112,8 +116,12 @@ Program::Program(const GladGLContext& gl, const std::string& name,
         gl.DeleteProgram(id_);
         throw Error("shader " + name + " does not link: " + text.data());
     }
-    const GLuint block = gl.GetUniformBlockIndex(id_, "Frame");
-    if (block != GL_INVALID_INDEX) gl.UniformBlockBinding(id_, block, 0);
+    GLuint binding = 0;
+    for (const char* const name_of_block : kBlocks) {
+        const GLuint block = gl.GetUniformBlockIndex(id_, name_of_block);
+        if (block != GL_INVALID_INDEX) gl.UniformBlockBinding(id_, block, binding);
+        ++binding;
+    }
     gl.UseProgram(id_);
     GLint unit = 0;
     for (const char* const sampler : kSamplers)

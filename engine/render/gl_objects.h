@@ -22,7 +22,9 @@ enum class Unit : GLuint {
     surface_depth,
     surface_normal,
     shadow_map,
-    drawn,
+    drawn_surface,
+    drawn_normal,
+    drawn_depth,
 };
 
 /// Owns one name made by glGen*. Frees it in the context it came from, which must be current.

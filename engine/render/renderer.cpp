@@ -7,7 +7,9 @@
 #include "render/targets.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace toile::render {
@@ -15,6 +17,11 @@ namespace {
 
 constexpr int kLargest = 8192;
 constexpr int kShadowSide = 2048;
+constexpr std::size_t kMaterials = 256; // an index fits in 8 bits; 0 is "none"
+// Kinds of pixels, as in common.glsl.
+constexpr float kMeshKind = 0.25f;
+constexpr float kFloorKind = 0.5f;
+constexpr float kEdgeKind = 0.5f;
 constexpr float kContactStrength = 0.85f;
 
 // Everything one picture needs, checked and looked up.
@@ -23,8 +30,20 @@ struct Drawable {
     const Material* material = nullptr;
     const Instance* instance = nullptr;
     Mat4f world_from_mesh;
-    bool holes = false;
+    unsigned variant = 0; ///< bits of Variant
+    float material_index = 0.0f;
 };
+
+// What a mesh's shader must do beyond plain colour.
+enum Variant : unsigned { kTextured = 1, kHoles = 2, kNormalMap = 4, kVariants = 8 };
+
+std::string defines(unsigned variant) {
+    std::string text;
+    if ((variant & kTextured) != 0) text += "#define TEXTURED\n";
+    if ((variant & kHoles) != 0) text += "#define HOLES\n";
+    if ((variant & kNormalMap) != 0) text += "#define NORMAL_MAP\n";
+    return text;
+}
 
 Mat4f matrix(const RigidTransform& t) {
     Mat4f m = Mat4f::Identity();
@@ -73,54 +92,57 @@ class Renderer::Impl {
   private:
     void collect(const Scene& scene);
     void fill_frame(const Scene& scene);
-    void draw_contact(const Scene& scene);
+    void draw_contact();
     void draw_shadow_map();
-    void draw_surfaces(const Scene& scene);
-    void draw_visibility();
-    void draw_background(const Scene& scene, bool over_everything);
-    void draw_meshes(const Scene& scene);
+    void draw_meshes();
     void draw_mesh(const Program& program, const Drawable& d, bool cull);
-    void bind_scene_textures(const Scene& scene);
+    void draw_screen(const Program& program, float kind);
+    void draw_visibility();
+    void draw_final(const Scene& scene);
+    [[nodiscard]] int horizon_row() const;
+    const Program& final_program(const std::string& definitions);
+    const Program& mesh_program(unsigned variant);
+    const Program& depth_program(unsigned variant);
     [[nodiscard]] GLuint texture_or_white(TextureId id) const;
 
-    Program depth_;
-    Program surface_;
-    Program floor_;
+    std::array<std::unique_ptr<Program>, kVariants> mesh_;
+    std::array<std::unique_ptr<Program>, kVariants> depth_;
+    Program gather_;
     Program visibility_;
+    Program floor_visibility_;
     Program blur_;
-    Program mesh_;
-    Program background_;
-    Program resolve_;
+    Program floor_blur_;
+    Program classify_;
+    std::map<std::string, Program> final_; ///< by definitions
     Framebuffer shadow_map_;
     std::optional<Targets> targets_;
     GlObject frame_buffer_;
+    GlObject material_buffer_;
     GlObject no_vertices_;
     GlObject contact_texture_;
     ContactMap contact_;
     FrameUniforms frame_{};
+    std::array<Vec4f, 2 * kMaterials> materials_{};
     std::vector<Drawable> drawables_;
-    bool behind_first_ = false; ///< the background is drawn before the meshes
 };
 
 Renderer::Impl::Impl(Context& context, const RendererOptions& options)
     : context_(context), gl_((context.make_current(), context.gl())), options_(options),
-      resources_(gl_), depth_(gl_, "depth", {shaders::k_common, shaders::k_depth_vertex},
-                              {shaders::k_common, shaders::k_depth_fragment}),
-      surface_(gl_, "surface", {shaders::k_common, shaders::k_mesh_vertex},
-               {shaders::k_common, shaders::k_surface_fragment}),
-      floor_(gl_, "floor", {shaders::k_common, shaders::k_floor_vertex},
-             {shaders::k_common, shaders::k_surface_fragment}),
+      resources_(gl_), gather_(gl_, "gather", {shaders::k_common, shaders::k_screen_vertex},
+                               {shaders::k_common, shaders::k_gather_fragment}),
       visibility_(gl_, "visibility", {shaders::k_common, shaders::k_screen_vertex},
                   {shaders::k_common, shaders::k_visibility_fragment}),
+      floor_visibility_(gl_, "visibility of the floor",
+                        {shaders::k_common, shaders::k_screen_vertex},
+                        {shaders::k_common, "#define ON_FLOOR\n", shaders::k_visibility_fragment}),
       blur_(gl_, "blur", {shaders::k_common, shaders::k_screen_vertex},
             {shaders::k_common, shaders::k_blur_fragment}),
-      mesh_(gl_, "mesh", {shaders::k_common, shaders::k_mesh_vertex},
-            {shaders::k_common, shaders::k_shading, shaders::k_mesh_fragment}),
-      background_(gl_, "background", {shaders::k_common, shaders::k_screen_vertex},
-                  {shaders::k_common, shaders::k_shading, shaders::k_background_fragment}),
-      resolve_(gl_, "resolve", {shaders::k_common, shaders::k_screen_vertex},
-               {shaders::k_common, shaders::k_resolve_fragment}),
+      floor_blur_(gl_, "blur on the floor", {shaders::k_common, shaders::k_screen_vertex},
+                  {shaders::k_common, "#define ON_FLOOR\n", shaders::k_blur_fragment}),
+      classify_(gl_, "classify", {shaders::k_common, shaders::k_screen_vertex},
+                {shaders::k_common, shaders::k_classify_fragment}),
       shadow_map_(make_shadow_map(gl_, kShadowSide)), frame_buffer_(gl_, GlObject::Kind::buffer),
+      material_buffer_(gl_, GlObject::Kind::buffer),
       no_vertices_(gl_, GlObject::Kind::vertex_array),
       contact_texture_(
           make_target(gl_, GL_R16F, ContactMap::kSide, ContactMap::kSide, 1, "contact shadow")) {
@@ -131,8 +153,49 @@ Renderer::Impl::Impl(Context& context, const RendererOptions& options)
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     gl_.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer_.id());
-    gl_.BufferData(GL_UNIFORM_BUFFER, sizeof(FrameUniforms), nullptr, GL_DYNAMIC_DRAW);
+    gl_.BufferData(GL_UNIFORM_BUFFER, sizeof(frame_), nullptr, GL_DYNAMIC_DRAW);
+    gl_.BindBuffer(GL_UNIFORM_BUFFER, material_buffer_.id());
+    gl_.BufferData(GL_UNIFORM_BUFFER, sizeof(materials_), nullptr, GL_DYNAMIC_DRAW);
     resize(options.width, options.height);
+}
+
+const Program& Renderer::Impl::final_program(const std::string& definitions) {
+    const auto known = final_.find(definitions);
+    if (known != final_.end()) return known->second;
+    return final_
+        .try_emplace(
+            definitions, gl_, "final picture",
+            std::initializer_list<const char*>{shaders::k_common, shaders::k_screen_vertex},
+            std::initializer_list<const char*>{shaders::k_common, definitions.c_str(),
+                                               shaders::k_shading, shaders::k_lighting,
+                                               shaders::k_final_fragment})
+        .first->second;
+}
+
+const Program& Renderer::Impl::mesh_program(unsigned variant) {
+    std::unique_ptr<Program>& program = mesh_[variant];
+    if (!program) {
+        const std::string text = defines(variant);
+        program = std::make_unique<Program>(
+            gl_, "mesh",
+            std::initializer_list<const char*>{shaders::k_common, shaders::k_mesh_vertex},
+            std::initializer_list<const char*>{shaders::k_common, text.c_str(),
+                                               shaders::k_mesh_fragment});
+    }
+    return *program;
+}
+
+const Program& Renderer::Impl::depth_program(unsigned variant) {
+    std::unique_ptr<Program>& program = depth_[variant & kHoles];
+    if (!program) {
+        const std::string text = defines(variant & kHoles);
+        program = std::make_unique<Program>(
+            gl_, "depth",
+            std::initializer_list<const char*>{shaders::k_common, shaders::k_depth_vertex},
+            std::initializer_list<const char*>{shaders::k_common, text.c_str(),
+                                               shaders::k_depth_fragment});
+    }
+    return *program;
 }
 
 void Renderer::Impl::resize(int width, int height) {
@@ -150,7 +213,6 @@ GLuint Renderer::Impl::texture_or_white(TextureId id) const {
 
 void Renderer::Impl::collect(const Scene& scene) {
     drawables_.clear();
-    behind_first_ = scene.background.kind == Background::Kind::camera;
     for (const Instance& instance : scene.instances) {
         if (instance.draw == Instance::Draw::hidden) continue;
         Drawable d;
@@ -162,10 +224,19 @@ void Renderer::Impl::collect(const Scene& scene) {
             throw Error("scene to draw: an instance names a mesh or material that the renderer "
                         "does not have");
         }
+        const Material& m = *d.material;
+        const GpuTexture* const base = resources_.texture(m.base_color_texture);
         d.world_from_mesh = matrix(instance.world_from_mesh);
-        const GpuTexture* const base = resources_.texture(d.material->base_color_texture);
-        d.holes = d.material->base_color.w() < 0.5f || (base != nullptr && base->holes);
-        behind_first_ |= instance.draw == Instance::Draw::occluder;
+        if (base != nullptr) d.variant |= kTextured;
+        if (m.base_color.w() < 0.5f || (base != nullptr && base->holes)) d.variant |= kHoles;
+        if (m.normal_texture != TextureId::none) d.variant |= kNormalMap;
+        if (instance.draw == Instance::Draw::visible) {
+            const auto index = static_cast<std::size_t>(instance.material);
+            d.material_index = static_cast<float>(index) / 255.0f;
+            materials_[2 * index] = {m.sheen_color.x(), m.sheen_color.y(), m.sheen_color.z(),
+                                     std::clamp(m.sheen_roughness, 0.1f, 1.0f)};
+            materials_[2 * index + 1] = Vec4f::Constant(std::clamp(m.roughness, 0.05f, 1.0f));
+        }
         drawables_.push_back(d);
     }
 }
@@ -201,16 +272,22 @@ void Renderer::Impl::fill_frame(const Scene& scene) {
     const bool hides = b.kind == Background::Kind::camera && b.depth != TextureId::none;
     frame_.occlusion = {b.depth_tolerance, hides ? (b.soft_edges ? 2.0f : 1.0f) : 0.0f,
                         high ? 16.0f : 10.0f, high ? 20.0f : 12.0f};
+    const bool floor = scene.floor && b.kind == Background::Kind::studio;
+    frame_.flags = {floor ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
+    set_touched(frame_, visible);
     contact_.begin(casters);
     const Vec3f rectangle = contact_.rectangle();
     frame_.contact = {rectangle.x(), rectangle.y(), 1.0f / rectangle.z(), kContactStrength};
     gl_.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer_.id());
-    gl_.BufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(FrameUniforms), &frame_);
+    gl_.BufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(frame_), &frame_);
     gl_.BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer_.id());
+    gl_.BindBuffer(GL_UNIFORM_BUFFER, material_buffer_.id());
+    gl_.BufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(materials_), materials_.data());
+    gl_.BindBufferBase(GL_UNIFORM_BUFFER, 1, material_buffer_.id());
 }
 
-void Renderer::Impl::draw_contact(const Scene& scene) {
-    if (!scene.floor || scene.background.kind != Background::Kind::studio) return;
+void Renderer::Impl::draw_contact() {
+    if (frame_.flags.x() < 0.5f) return;
     for (const Drawable& d : drawables_) {
         if (!d.instance->casts_shadow) continue;
         contact_.add(d.mesh->surface_positions, d.mesh->surface_triangles,
@@ -222,16 +299,14 @@ void Renderer::Impl::draw_contact(const Scene& scene) {
 }
 
 void Renderer::Impl::draw_mesh(const Program& program, const Drawable& d, bool cull) {
-    const Material& m = *d.material;
-    if (cull && !m.double_sided) {
+    if (cull && !d.material->double_sided) {
         gl_.Enable(GL_CULL_FACE);
     } else {
         gl_.Disable(GL_CULL_FACE);
     }
     gl_.UniformMatrix4fv(program.location("world_from_mesh"), 1, GL_FALSE,
                          d.world_from_mesh.data());
-    gl_.Uniform1i(program.location("holes"), d.holes ? 1 : 0);
-    bind_texture(gl_, Unit::base_color_texture, texture_or_white(m.base_color_texture));
+    bind_texture(gl_, Unit::base_color_texture, texture_or_white(d.material->base_color_texture));
     gl_.BindVertexArray(d.mesh->vertex_array.id());
     gl_.DrawElements(GL_TRIANGLES, d.mesh->index_count, GL_UNSIGNED_INT, nullptr);
 }
@@ -242,91 +317,120 @@ void Renderer::Impl::draw_shadow_map() {
     gl_.DepthFunc(GL_LESS);
     gl_.DepthMask(GL_TRUE);
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
-    depth_.use();
     for (const Drawable& d : drawables_) {
-        if (d.instance->casts_shadow) draw_mesh(depth_, d, false);
+        if (!d.instance->casts_shadow) continue;
+        const Program& program = depth_program(d.variant);
+        program.use();
+        draw_mesh(program, d, true);
     }
 }
 
-void Renderer::Impl::draw_surfaces(const Scene& scene) {
-    targets_->surface.bind(gl_);
-    gl_.ClearColor(0.5f, 0.5f, 1.0f, 0.0f);
-    gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    surface_.use();
-    for (const Drawable& d : drawables_)
-        draw_mesh(surface_, d, true);
-    if (scene.floor && scene.background.kind == Background::Kind::studio) {
-        floor_.use();
-        gl_.Uniform1i(floor_.location("holes"), 0);
-        gl_.Disable(GL_CULL_FACE);
-        gl_.BindVertexArray(no_vertices_.id());
-        gl_.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+void Renderer::Impl::draw_meshes() {
+    targets_->drawn.bind(gl_);
+    const std::array<float, 4> nothing = {};
+    const float far_away = 1.0f;
+    gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
+    gl_.ClearBufferfv(GL_DEPTH, 0, &far_away);
+    for (const Drawable& d : drawables_) {
+        const Program& program = mesh_program(d.variant);
+        program.use();
+        const Material& m = *d.material;
+        gl_.Uniform4fv(program.location("base_color"), 1, m.base_color.data());
+        gl_.Uniform1f(program.location("material"), d.material_index);
+        gl_.Uniform1f(program.location("normal_scale"), m.normal_scale);
+        bind_texture(gl_, Unit::normal_texture, texture_or_white(m.normal_texture));
+        draw_mesh(program, d, true);
     }
+}
+
+void Renderer::Impl::draw_screen(const Program& program, float kind) {
+    program.use();
+    gl_.Uniform1f(program.location("kind"), kind);
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void Renderer::Impl::draw_visibility() {
-    gl_.Disable(GL_DEPTH_TEST);
     gl_.Disable(GL_CULL_FACE);
     gl_.BindVertexArray(no_vertices_.id());
-    bind_texture(gl_, Unit::surface_depth, targets_->surface.depth.id());
+    const GLenum samples = GL_TEXTURE_2D_MULTISAMPLE;
+    bind_texture(gl_, Unit::drawn_surface, targets_->drawn.color.id(), samples);
+    bind_texture(gl_, Unit::drawn_normal, targets_->drawn.second.id(), samples);
+    bind_texture(gl_, Unit::drawn_depth, targets_->drawn.depth.id(), samples);
+    gl_.DepthFunc(GL_ALWAYS);
+    targets_->surface.bind(gl_);
+    draw_screen(gather_, kMeshKind);
+
     bind_texture(gl_, Unit::surface_normal, targets_->surface.color.id());
+    bind_texture(gl_, Unit::surface_depth, targets_->surface.second.id());
     bind_texture(gl_, Unit::shadow_map, shadow_map_.depth.id());
+    gl_.DepthFunc(GL_EQUAL);
+    gl_.DepthMask(GL_FALSE);
+    const std::array<float, 4> all_seen = {1.0f, 1.0f, 1.0f, 1.0f};
     targets_->visibility.bind(gl_);
-    visibility_.use();
-    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl_.ClearBufferfv(GL_COLOR, 0, all_seen.data());
+    draw_screen(visibility_, kMeshKind);
+    draw_screen(floor_visibility_, kFloorKind);
     bind_texture(gl_, Unit::visibility_texture, targets_->visibility.color.id());
     targets_->blurred.bind(gl_);
-    blur_.use();
-    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-    gl_.Enable(GL_DEPTH_TEST);
+    gl_.ClearBufferfv(GL_COLOR, 0, all_seen.data());
+    draw_screen(blur_, kMeshKind);
+    draw_screen(floor_blur_, kFloorKind);
+    gl_.DepthMask(GL_TRUE);
 }
 
-void Renderer::Impl::bind_scene_textures(const Scene& scene) {
+// The row of the picture that the horizon crosses, for a camera that does not roll.
+int Renderer::Impl::horizon_row() const {
+    const Mat4f& m = frame_.world_from_camera;
+    if (std::abs(m(1, 0)) > 1e-4f || m(1, 1) < 0.1f) return options_.height;
+    const float tangent = m(1, 2) / m(1, 1);
+    const float share = (tangent - frame_.borders.z()) / (frame_.borders.w() - frame_.borders.z());
+    const float row = std::ceil(share * static_cast<float>(options_.height)) + 1.0f;
+    return static_cast<int>(std::clamp(row, 0.0f, static_cast<float>(options_.height)));
+}
+
+void Renderer::Impl::draw_final(const Scene& scene) {
     bind_texture(gl_, Unit::visibility_texture, targets_->blurred.color.id());
     bind_texture(gl_, Unit::camera_picture, texture_or_white(scene.background.picture));
     bind_texture(gl_, Unit::camera_depth, texture_or_white(scene.background.depth));
-    bind_texture(gl_, Unit::contact_map, contact_texture_.id());
-}
+    targets_->final.bind(gl_);
+    gl_.Enable(GL_SCISSOR_TEST);
+    const int w = options_.width;
+    const int h = options_.height;
+    const auto scissor_meshes = [&] {
+        const float scale = frame_.range.w();
+        const auto at = [&](float value, int limit) {
+            return static_cast<int>(std::clamp(value / scale, 0.0f, static_cast<float>(limit)));
+        };
+        const int x = at(frame_.meshes.x(), w);
+        const int y = at(frame_.meshes.y(), h);
+        gl_.Scissor(x, y, at(frame_.meshes.z() + scale, w) - x,
+                    at(frame_.meshes.w() + scale, h) - y);
+    };
+    gl_.Scissor(0, 0, w, h);
+    gl_.Clear(GL_DEPTH_BUFFER_BIT);
+    scissor_meshes();
+    gl_.DepthFunc(GL_ALWAYS);
+    draw_screen(classify_, kMeshKind);
 
-void Renderer::Impl::draw_background(const Scene& scene, bool over_everything) {
-    background_.use();
-    gl_.Uniform1i(background_.location("has_floor"), scene.floor ? 1 : 0);
-    gl_.Disable(GL_CULL_FACE);
+    const Background::Kind kind = scene.background.kind;
+    std::string variant = kind == Background::Kind::studio   ? "#define STUDIO\n"
+                          : kind == Background::Kind::camera ? "#define CAMERA\n"
+                                                             : "";
+    const std::string behind = variant;
+    if (frame_.occlusion.y() > 0.5f) variant += "#define OCCLUSION\n";
+    if (frame_.occlusion.y() == 1.0f) variant += "#define HARD_EDGES\n";
+    gl_.DepthFunc(GL_EQUAL);
     gl_.DepthMask(GL_FALSE);
-    gl_.DepthFunc(over_everything ? GL_ALWAYS : GL_LEQUAL);
-    gl_.BindVertexArray(no_vertices_.id());
-    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    draw_screen(final_program(variant + "#define SURFACE\n"), kMeshKind);
+    draw_screen(final_program(variant + "#define EDGE\n"), kEdgeKind);
+    const bool studio = kind == Background::Kind::studio;
+    const int horizon = !studio ? h : frame_.flags.x() > 0.5f ? horizon_row() : 0;
+    gl_.Scissor(0, 0, w, horizon);
+    draw_screen(final_program(behind), 1.0f);
+    gl_.Scissor(0, horizon, w, h - horizon);
+    if (horizon < h) draw_screen(final_program(behind + "#define WALL\n"), 1.0f);
     gl_.DepthMask(GL_TRUE);
-    gl_.DepthFunc(GL_LESS);
-}
-
-void Renderer::Impl::draw_meshes(const Scene& scene) {
-    targets_->drawn.bind(gl_);
-    gl_.ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
-    gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    bind_scene_textures(scene);
-    if (behind_first_) draw_background(scene, true);
-    surface_.use();
-    gl_.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    for (const Drawable& d : drawables_) {
-        if (d.instance->draw == Instance::Draw::occluder) draw_mesh(surface_, d, true);
-    }
-    gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    mesh_.use();
-    for (const Drawable& d : drawables_) {
-        if (d.instance->draw != Instance::Draw::visible) continue;
-        const Material& m = *d.material;
-        gl_.Uniform4fv(mesh_.location("base_color"), 1, m.base_color.data());
-        gl_.Uniform4f(mesh_.location("sheen"), m.sheen_color.x(), m.sheen_color.y(),
-                      m.sheen_color.z(), m.sheen_roughness);
-        gl_.Uniform1f(mesh_.location("roughness"), std::clamp(m.roughness, 0.05f, 1.0f));
-        gl_.Uniform1f(mesh_.location("normal_scale"), m.normal_scale);
-        const bool mapped = m.normal_texture != TextureId::none;
-        gl_.Uniform1i(mesh_.location("has_normal_texture"), mapped ? 1 : 0);
-        bind_texture(gl_, Unit::normal_texture, texture_or_white(m.normal_texture));
-        draw_mesh(mesh_, d, true);
-    }
-    if (!behind_first_) draw_background(scene, false);
+    gl_.Disable(GL_SCISSOR_TEST);
 }
 
 void Renderer::Impl::draw(const Scene& scene) {
@@ -343,19 +447,11 @@ void Renderer::Impl::draw(const Scene& scene) {
     clear_gl_errors(gl_);
     collect(scene);
     fill_frame(scene);
-    draw_contact(scene);
+    draw_contact();
     draw_shadow_map();
-    draw_surfaces(scene);
+    draw_meshes();
     draw_visibility();
-    draw_meshes(scene);
-
-    gl_.Disable(GL_DEPTH_TEST);
-    gl_.Disable(GL_CULL_FACE);
-    gl_.BindVertexArray(no_vertices_.id());
-    bind_texture(gl_, Unit::drawn, targets_->drawn.color.id(), GL_TEXTURE_2D_MULTISAMPLE);
-    targets_->final.bind(gl_);
-    resolve_.use();
-    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    draw_final(scene);
     check_gl(gl_, "drawing a picture");
 }
 

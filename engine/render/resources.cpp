@@ -10,6 +10,8 @@
 namespace toile::render {
 namespace {
 
+constexpr std::size_t kMaxMaterials = 255; // the surface picture holds indices of 8 bits
+
 template <typename Id>
 std::size_t index_of(Id id) {
     return static_cast<std::size_t>(id) - 1; // none wraps round to a huge index
@@ -183,6 +185,9 @@ MaterialId Resources::add_material(const Material& m) {
     const float sum =
         m.base_color.sum() + m.sheen_color.sum() + m.sheen_roughness + m.roughness + m.normal_scale;
     if (!std::isfinite(sum)) throw Error("material: a value is not finite");
+    if (materials_.size() >= kMaxMaterials) {
+        throw Error("material: a renderer holds at most " + std::to_string(kMaxMaterials));
+    }
     materials_.push_back(m);
     return static_cast<MaterialId>(materials_.size());
 }

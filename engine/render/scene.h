@@ -59,7 +59,7 @@ struct Camera {
 
 /// Directions point towards the light, world; colours are linear irradiance over pi.
 struct Lighting {
-    Vec3f key_direction = Vec3f(-0.45f, 0.75f, 0.65f);
+    Vec3f key_direction = Vec3f(-0.50f, 1.05f, 0.62f);
     Vec3f key_color = Vec3f(0.93f, 0.90f, 0.86f);
     float key_size = 0.22f; ///< tangent of the angle that the soft box is wide; 0: hard shadows
     Vec3f fill_direction = Vec3f(0.8f, 0.25f, 0.6f);

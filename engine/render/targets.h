@@ -7,8 +7,9 @@ namespace toile::render {
 
 struct Framebuffer {
     GlObject object;
-    GlObject color; ///< may be none
-    GlObject depth; ///< may be none
+    GlObject color;  ///< may be none
+    GlObject second; ///< second colour, may be none
+    GlObject depth;  ///< may be none
     int width = 0;
     int height = 0;
 
@@ -22,11 +23,11 @@ inline constexpr int kSamples = 4;
 
 /// Everything whose size follows the picture's.
 struct Targets {
-    Framebuffer surface;    ///< first look: normals and depth, half resolution of `drawn`
+    Framebuffer drawn;      ///< colour and material, normal, depth; multisampled
+    Framebuffer surface;    ///< normal, depth in metres, kind; half resolution of `drawn`
     Framebuffer visibility; ///< shadow and ambient occlusion, same size
     Framebuffer blurred;
-    Framebuffer drawn; ///< display-linear light, multisampled
-    Framebuffer final; ///< 8-bit sRGB
+    Framebuffer final; ///< 8-bit sRGB, and the kind of each pixel
 
     /// `supersampling` 1 or 2. \throw Error
     Targets(const GladGLContext& gl, int width, int height, int supersampling);

@@ -21,9 +21,16 @@ layout(std140) uniform Frame {
     vec4 subject;          // centre of what is shown, w: radius
     vec4 contact;          // x and z of the map's corner, 1 / size, strength
     vec4 occlusion;        // tolerance (metres), 0 none 1 exact 2 soft, taps: ambient, shadow
+    vec4 meshes;           // pixels of the target that meshes may touch: left, bottom, right, top
+    vec4 flags;            // 1 with a floor
 };
 
 const float kPi = 3.14159265;
+const float kAlike = 0.015; // samples of one pixel this near in depth are one surface, metres
+// Kinds of pixels, stored as depths; background is 1.
+const float kMesh = 0.25;
+const float kFloor = 0.5;
+const float kEdge = 0.5;
 
 // Point of the camera's frame (looks along -z) at a place of the picture and a depth.
 vec3 camera_point(vec2 uv, float depth) {
@@ -36,6 +43,13 @@ vec3 world_point(vec2 uv, float depth) {
 
 float linear_depth(float stored) {
     return 2.0 * range.x * range.y / (range.x + range.y - (2.0 * stored - 1.0) * (range.y - range.x));
+}
+
+// Depth at which a ray meets the floor; the far end where it does not, or there is no floor.
+float floor_depth(vec2 place) {
+    float down = -(mat3(world_from_camera) * camera_point(place, 1.0)).y;
+    float depth = world_from_camera[3].y / max(down, 1e-5);
+    return flags.x > 0.5 && down > 1e-5 && depth > range.x ? min(depth, range.y) : range.y;
 }
 
 // 16 bits of depth in two 8-bit channels.

@@ -1,5 +1,5 @@
 // How much of the key light (r) and of the surroundings (g) each pixel sees; b, a: its depth.
-// Loops of zero rounds stand for branches: the CPU rasteriser runs both sides of an `if`.
+// Variant ON_FLOOR: the floor takes only the shadow; it has its own contact map.
 in vec2 uv;
 uniform sampler2D surface_depth;
 uniform sampler2D surface_normal;
@@ -31,7 +31,7 @@ float ambient(vec3 p, vec3 n, float depth, float angle) {
     for (int i = 0; i < count; ++i) {
         vec2 s = spiral(i, float(count), angle);
         vec2 place = uv + s * length(s) * scale;
-        vec3 q = camera_point(place, linear_depth(textureLod(surface_depth, place, 0.0).r));
+        vec3 q = camera_point(place, textureLod(surface_depth, place, 0.0).r);
         vec3 v = q - p;
         float vv = dot(v, v);
         float f = max(r2 - vv, 0.0) / r2;
@@ -46,7 +46,12 @@ float key(vec3 world, vec3 n, float angle) {
     vec3 m = mat3(light_from_world) * n;
     vec2 slope = clamp(-m.xy / min(m.z, -0.15), -2.5, 2.5); // depth of the receiver's own plane
     float tangent = key_direction.w;
-    float search = clamp(tangent * 0.35, 2.0 * shadow.w, 0.07);
+#ifdef ON_FLOOR
+    const float widest = 0.17;
+#else
+    const float widest = 0.07;
+#endif
+    float search = clamp(tangent * 0.6, 2.0 * shadow.w, widest);
     bool inside = all(greaterThan(p.xy * shadow.xy, vec2(-0.05))) &&
                   all(lessThan(p.xy * shadow.xy, vec2(1.05))) && p.z > 0.0;
     float blockers = 0.0;
@@ -62,7 +67,7 @@ float key(vec3 world, vec3 n, float angle) {
         }
     }
     float gap = max(p.z - blocker_depth / max(blockers, 1.0), 0.0);
-    float radius = clamp(gap * tangent * 0.5, 2.0 * shadow.w, 0.11);
+    float radius = clamp(gap * tangent * 0.5, 2.0 * shadow.w, widest);
     count = blockers > 0.0 ? int(occlusion.w) : 0;
     float hidden = 0.0;
     for (int i = 0; i < count; ++i) {
@@ -74,18 +79,18 @@ float key(vec3 world, vec3 n, float angle) {
 }
 
 void main() {
-    float stored = texelFetch(surface_depth, ivec2(gl_FragCoord.xy), 0).r;
-    vec2 result = vec2(1.0);
-    float depth = linear_depth(stored);
-    int surfaces = stored < 1.0 ? 1 : 0;
-    for (int i = 0; i < surfaces; ++i) {
-        vec3 n = normalize(texelFetch(surface_normal, ivec2(gl_FragCoord.xy), 0).xyz * 2.0 - 1.0);
-        vec3 p = camera_point(uv, depth);
-        float angle = pattern_angle();
-        float facing = dot(n, key_direction.xyz);
-        vec3 lifted = n * (0.0015 + 1.5 * shadow.w * (1.0 - clamp(facing, 0.0, 1.0)));
-        result.x = key((world_from_camera * vec4(p, 1.0)).xyz + lifted, n, angle);
-        result.y = ambient(p, transpose(mat3(world_from_camera)) * n, depth, angle);
-    }
-    visibility = vec4(result, pack_depth(depth));
+    float depth = texelFetch(surface_depth, ivec2(gl_FragCoord.xy), 0).r;
+    vec3 p = camera_point(uv, depth);
+    float angle = pattern_angle();
+    vec2 seen = vec2(1.0);
+#ifdef ON_FLOOR
+    vec3 n = vec3(0.0, 1.0, 0.0);
+#else
+    vec3 n = normalize(texelFetch(surface_normal, ivec2(gl_FragCoord.xy), 0).xyz * 2.0 - 1.0);
+    seen.y = ambient(p, transpose(mat3(world_from_camera)) * n, depth, angle);
+#endif
+    float facing = dot(n, key_direction.xyz);
+    vec3 lifted = n * (0.0015 + 1.5 * shadow.w * (1.0 - clamp(facing, 0.0, 1.0)));
+    seen.x = key((world_from_camera * vec4(p, 1.0)).xyz + lifted, n, angle);
+    visibility = vec4(seen, pack_depth(depth));
 }
