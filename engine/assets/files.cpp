@@ -31,8 +31,10 @@ Scene load_scene(const std::filesystem::path& file, const ImportLimits& limits) 
             scene = read_gltf(file, budget);
         } else if (extension == ".obj") {
             scene = read_obj(file, budget);
-        } else if (extension == ".ply" || extension == ".fbx") {
-            scene = read_with_assimp(file, budget);
+        } else if (extension == ".ply") {
+            scene = read_ply(file, budget);
+        } else if (extension == ".fbx") {
+            scene = read_fbx(file, budget);
             rules.sum_tolerance = std::numeric_limits<double>::infinity();
         } else {
             throw FileError(name, "unknown kind of 3D file (.glb, .gltf, .fbx, .obj and .ply are "

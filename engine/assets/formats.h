@@ -14,8 +14,10 @@ namespace toile::assets {
 [[nodiscard]] Scene read_gltf(const std::filesystem::path& file, Budget& budget);
 /// .obj. Vertices stay in the order of the file. \throw FileError
 [[nodiscard]] Scene read_obj(const std::filesystem::path& file, Budget& budget);
-/// .ply and .fbx by assimp. Skins are not checked yet. \throw FileError
-[[nodiscard]] Scene read_with_assimp(const std::filesystem::path& file, Budget& budget);
+/// .ply, text or binary; colours are not kept. \throw FileError
+[[nodiscard]] Scene read_ply(const std::filesystem::path& file, Budget& budget);
+/// .fbx by assimp. Skins are not checked yet. \throw FileError
+[[nodiscard]] Scene read_fbx(const std::filesystem::path& file, Budget& budget);
 
 /// A whole .glb. \throw Error when the scene contradicts itself
 [[nodiscard]] std::vector<std::uint8_t> write_glb(const Scene& scene);

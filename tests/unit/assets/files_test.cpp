@@ -2,8 +2,7 @@
 
 #include "assets/skins.h"
 #include "core/bytes.h"
-#include "core/random.h"
-#include "support/meshes.h"
+#include "support/scenes.h"
 #include "support/shared_data.h"
 #include "support/temporary_folder.h"
 #include "support/throws.h"
@@ -13,73 +12,6 @@
 
 namespace toile::assets {
 namespace {
-
-// A skinned, morphing, textured, animated tube with two materials.
-Scene everything() {
-    Scene scene;
-    const geometry::TriangleMesh tube = test::tube(0.2f, 0.1f, 1.0f, 12, 6);
-    Primitive p;
-    p.positions = tube.positions;
-    p.triangles = tube.triangles;
-    p.normals.resize(p.positions.size());
-    geometry::vertex_normals(p.positions, p.triangles, p.normals);
-    MorphTarget wide{"wide", {}, {}};
-    for (const Vec3f& v : p.positions) {
-        p.texcoords.emplace_back(v.x(), v.y());
-        p.joints.push_back({1, 2, 0, 0});
-        p.weights.push_back({1.0f - v.y(), v.y(), 0.0f, 0.0f});
-        wide.positions.emplace_back(0.1f * v.x(), 0.0f, 0.1f * v.z());
-    }
-    p.morphs = {wide};
-    p.material = 0;
-    p.variant_materials = {kNone, 1};
-    scene.meshes = {{"tube", {p}, {0.25f}}};
-
-    scene.nodes.resize(5);
-    scene.nodes[0].name = "root";
-    scene.nodes[1] = {"hips", 0, Vec3f(0, 0.1f, 0), Quatf::Identity(), Vec3f::Ones(), kNone, kNone};
-    scene.nodes[2] = {"spine",
-                      1,
-                      Vec3f(0, 0.5f, 0),
-                      Quatf(Eigen::AngleAxisf(0.3f, Vec3f::UnitX())),
-                      Vec3f::Ones(),
-                      kNone,
-                      kNone};
-    scene.nodes[3] = {"idle", 2, Vec3f(0, 0.4f, 0), Quatf::Identity(), Vec3f::Ones(), kNone, kNone};
-    scene.nodes[4] = {"body", kNone, Vec3f::Zero(), Quatf::Identity(), Vec3f::Ones(), 0, 0};
-    const auto world = node_transforms(scene);
-    Skin skin{"skin", {1, 2, 3}, {}};
-    for (const int j : skin.joints)
-        skin.inverse_bind.push_back(world[static_cast<std::size_t>(j)].inverse());
-    for (auto& row : scene.meshes[0].primitives[0].joints)
-        row = {0, 1, 0, 0};
-    for (std::size_t v = 0; v < p.positions.size(); ++v) // no joint without weight
-        if (p.weights[v][1] == 0.0f) scene.meshes[0].primitives[0].joints[v][1] = 0;
-    scene.skins = {skin};
-
-    Texture texture{"weave", {8, 8, {}}, false};
-    Random random(7);
-    for (int i = 0; i < 8 * 8 * 4; ++i)
-        texture.image.pixels.push_back(static_cast<std::uint8_t>(random.next()));
-    scene.textures = {texture};
-    Material cloth;
-    cloth.name = "cloth";
-    cloth.base_color_texture = 0;
-    cloth.sheen_color = Vec3f(0.5f, 0.4f, 0.3f);
-    cloth.sheen_roughness = 0.3f;
-    Material plain;
-    plain.name = "plain";
-    plain.base_color = Vec4f(0.1f, 0.2f, 0.3f, 1.0f);
-    plain.double_sided = true;
-    scene.materials = {cloth, plain};
-    scene.variants = {"red", "blue"};
-
-    Channel channel{2, Channel::Path::rotation, {0.0f, 0.5f}, {}};
-    channel.values = {Quatf::Identity().coeffs(),
-                      Quatf(Eigen::AngleAxisf(1.0f, Vec3f::UnitZ())).coeffs()};
-    scene.animations = {{"wave", {channel}}};
-    return scene;
-}
 
 void expect_equal(const Primitive& a, const Primitive& b) {
     EXPECT_EQ(a.positions, b.positions);
@@ -153,7 +85,7 @@ void expect_weights_sum_to_one(const Scene& scene) {
 
 TEST(Glb, RoundTripKeepsEverything) {
     const test::TemporaryFolder folder;
-    const Scene scene = everything();
+    const Scene scene = test::everything();
     save_scene(scene, folder / "a.glb");
     const Scene back = load_scene(folder / "a.glb");
     expect_equal(scene, back);
@@ -218,7 +150,7 @@ TEST(SharedSkins, OldExportsWithWrongWeightsAreRefused) {
 
 TEST(Obj, RoundTripKeepsOrderAndTexcoords) {
     const test::TemporaryFolder folder;
-    Scene scene = everything();
+    Scene scene = test::everything();
     scene.nodes[4].skin = kNone;
     save_scene(scene, folder / "a.obj");
     const Scene back = load_scene(folder / "a.obj");
@@ -232,7 +164,7 @@ TEST(Obj, RoundTripKeepsOrderAndTexcoords) {
 
 TEST(Ply, RoundTripKeepsPositionsAndTriangles) {
     const test::TemporaryFolder folder;
-    Scene scene = everything();
+    Scene scene = test::everything();
     scene.nodes[4].skin = kNone;
     save_scene(scene, folder / "a.ply");
     const Scene back = load_scene(folder / "a.ply");
@@ -245,7 +177,7 @@ TEST(Files, UnknownKindsAreRefused) {
     const test::TemporaryFolder folder;
     EXPECT_ERROR((void)load_scene(folder / "a.stl"), "unknown kind");
     EXPECT_ERROR((void)load_scene(folder / "a.glb"), "no such file");
-    EXPECT_ERROR(save_scene(everything(), folder / "a.fbx"), "are written as");
+    EXPECT_ERROR(save_scene(test::everything(), folder / "a.fbx"), "are written as");
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// FBX and PLY by assimp; what assimp drops or leaves to us (units, axes, joints that skin nothing,
+// FBX by assimp; what assimp drops or leaves to us (units, axes, joints that skin nothing,
 // rigid vertices) is put right here.
 #include "assets/formats.h"
 #include "assets/gltf_parts.h"
@@ -28,9 +28,9 @@ Eigen::Matrix4f matrix(const aiMatrix4x4& m) {
     return result;
 }
 
-class AssimpConverter {
+class FbxConverter {
   public:
-    AssimpConverter(const aiScene& source, std::filesystem::path file, Budget& budget, float scale)
+    FbxConverter(const aiScene& source, std::filesystem::path file, Budget& budget, float scale)
         : source_(source), file_(std::move(file)), budget_(budget), scale_(scale) {}
 
     Scene run() {
@@ -318,6 +318,11 @@ class AssimpConverter {
     std::map<std::pair<std::string, bool>, int> texture_of_;
 };
 
+std::string first_line(std::string text) {
+    text.erase(std::min(text.find('\n'), text.size()));
+    return text;
+}
+
 // FBX counts in units of UnitScaleFactor centimetres.
 float metres_per_unit(const aiScene& scene, const Budget& budget) {
     double centimetres = 1.0;
@@ -332,45 +337,19 @@ float metres_per_unit(const aiScene& scene, const Budget& budget) {
     return static_cast<float>(centimetres / 100.0);
 }
 
-// A PLY header that claims more elements than the file has bytes would make assimp allocate them.
-void check_ply(const std::vector<std::uint8_t>& bytes, const Budget& budget) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
-                                std::min<std::size_t>(bytes.size(), 1u << 16));
-    const std::size_t end = text.find("end_header");
-    if (text.rfind("ply", 0) != 0 || end == std::string_view::npos)
-        throw budget.error("not a PLY file (no header)");
-    std::size_t at = 0;
-    while ((at = text.find("element ", at)) < end) {
-        const std::size_t line_end = text.find('\n', at);
-        const std::string line(text.substr(at, line_end - at));
-        const std::size_t number = line.find_first_of("0123456789", line.find(' ', 8));
-        const unsigned long long count =
-            number == std::string::npos ? 0 : std::strtoull(line.c_str() + number, nullptr, 10);
-        if (count > bytes.size())
-            throw budget.error("claims '" + line.substr(0, 60) + "', more than its " +
-                               std::to_string(bytes.size()) + " bytes can hold");
-        at += 8;
-    }
-}
-
 } // namespace
 
-Scene read_with_assimp(const std::filesystem::path& file, Budget& budget) {
+Scene read_fbx(const std::filesystem::path& file, Budget& budget) {
     const std::vector<std::uint8_t> bytes = read_bytes(file, budget.limits().max_file_bytes);
-    const bool fbx = file.extension() != ".ply" && file.extension() != ".PLY";
-    if (!fbx) check_ply(bytes, budget);
     Assimp::Importer importer;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
-    const unsigned steps = fbx ? aiProcess_Triangulate | aiProcess_JoinIdenticalVertices
-                               : static_cast<unsigned>(aiProcess_Triangulate);
-    const aiScene* scene =
-        importer.ReadFileFromMemory(bytes.data(), bytes.size(), steps, fbx ? "fbx" : "ply");
+    const aiScene* scene = importer.ReadFileFromMemory(
+        bytes.data(), bytes.size(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices, "fbx");
     if (scene == nullptr || scene->mRootNode == nullptr)
-        throw budget.error(std::string("cannot be read: ") + importer.GetErrorString());
-    Scene result =
-        AssimpConverter(*scene, file, budget, fbx ? metres_per_unit(*scene, budget) : 1.0f).run();
+        throw budget.error("cannot be read: " + first_line(importer.GetErrorString()));
+    Scene result = FbxConverter(*scene, file, budget, metres_per_unit(*scene, budget)).run();
     if (result.meshes.empty()) throw budget.error("holds no triangles");
     return result;
 }
