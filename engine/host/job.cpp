@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <mutex>
 
 namespace toile::host {
 namespace {
@@ -10,6 +11,12 @@ namespace {
 // A signal handler can reach nothing but this.
 std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
+
+// Progress may come from any thread; watchers share one terminal, so one lock serves all jobs.
+std::mutex& progress_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
 
 extern "C" void toile_on_interrupt(int signal) {
     if (interrupted.exchange(true)) {
@@ -30,6 +37,7 @@ Job::Job(Progress progress, const std::atomic<bool>* stop)
 std::int32_t Job::report(toile_job* job, double fraction, const char* text) noexcept {
     if (job == nullptr) return 0;
     Job& self = *static_cast<Job*>(job->job_data);
+    const std::lock_guard lock(progress_mutex());
     if (std::isfinite(fraction)) self.fraction_ = std::clamp(fraction, self.fraction_, 1.0);
     try {
         if (self.progress_) self.progress_(self.fraction_, text == nullptr ? "" : text);
