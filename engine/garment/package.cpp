@@ -55,8 +55,10 @@ GarmentPackage read_package(const fs::path& source, const PackageLimits& limits,
             if (entry.mesh.empty() || !read_size_meshes(files, entry, size, faults, package.notes))
                 continue;
             const std::string mesh = files.shown(entry.mesh);
+            const std::size_t before = faults.size();
             check_simulation(size, mesh, limits, faults);
             check_unit(size, mesh, body ? &body->rest : nullptr, faults);
+            if (faults.size() == before) check_render(size, mesh, limits, faults);
             package.sizes.push_back(std::move(size));
         }
         check_across_sizes(package, shown, faults);

@@ -1,5 +1,7 @@
 #include "garment/package_checks.h"
 
+#include "garment/embedding.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +11,12 @@ namespace toile::garment {
 namespace {
 
 constexpr double kLeastArea = 1e-9; ///< m^2 of a triangle; 0.03 mm x 0.06 mm
+
+std::string millimetres(double metres) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.1f mm", 1000.0 * metres);
+    return text.data();
+}
 
 std::string metres(double value) {
     std::array<char, 32> text{};
@@ -85,19 +93,18 @@ std::string likely_unit(double extent, double wanted) {
         const char* name;
         double metres;
     };
-    static constexpr std::array<Unit, 4> kUnits = {
-        {{"decimetres", 0.1}, {"centimetres", 0.01}, {"millimetres", 0.001}, {"inches", 0.0254}}};
+    static constexpr std::array<Unit, 3> kUnits = {
+        {{"decimetres", 0.1}, {"centimetres", 0.01}, {"millimetres", 0.001}}};
     const Unit* best = nullptr;
     for (const Unit& unit : kUnits)
         if (best == nullptr || std::abs(std::log(extent * unit.metres / wanted)) <
                                    std::abs(std::log(extent * best->metres / wanted)))
             best = &unit;
-    return std::string("its unit looks like ") + best->name + ": multiply by " +
-           (best->metres == 0.1     ? "0.1"
-            : best->metres == 0.01  ? "0.01"
-            : best->metres == 0.001 ? "0.001"
-                                    : "0.0254") +
-           ", or start with `toile garment new`";
+    std::array<char, 120> text{};
+    std::snprintf(text.data(), text.size(),
+                  "its unit looks like %s: multiply by %g, or start with `toile garment new`",
+                  best->name, best->metres);
+    return text.data();
 }
 
 } // namespace
@@ -153,6 +160,19 @@ void check_unit(const GarmentSize& size, const std::string& shown,
                                                "; +Y is up and the floor at 0: `toile garment "
                                                "new` moves it"});
     }
+}
+
+void check_render(const GarmentSize& size, const std::string& shown, const PackageLimits& limits,
+                  Faults& faults) {
+    const SurfaceEmbedding embedding(size);
+    const auto& parts = embedding.parts();
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (!(parts[i].max_distance <= limits.max_render_distance))
+            faults.push_back({FaultCode::render_far,
+                              shown + ": render mesh '" + size.render.meshes[parts[i].mesh].name +
+                                  "' lies " + millimetres(parts[i].max_distance) +
+                                  " off the simulation mesh, at most " +
+                                  millimetres(limits.max_render_distance) + " are allowed"});
 }
 
 void check_across_sizes(GarmentPackage& package, const std::string& shown, Faults& faults) {
