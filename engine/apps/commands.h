@@ -17,6 +17,7 @@ struct GlobalOptions {
 };
 
 /// view
+void add_avatar_commands(CLI::App& app, const GlobalOptions& options);
 void add_view_commands(CLI::App& app, const GlobalOptions& options);
 /// plugin list, plugin check
 void add_plugin_commands(CLI::App& app, const GlobalOptions& options);

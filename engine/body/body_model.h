@@ -6,7 +6,9 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace toile::body {
@@ -33,6 +35,10 @@ enum class Part : std::uint8_t {
     pelvis,
     neck,
 };
+
+/// Name in files: "left_upper_arm".
+[[nodiscard]] std::string_view part_label(Part part);
+[[nodiscard]] std::optional<Part> part_from_label(std::string_view name);
 
 /// One shape component: displacement of every vertex and joint per unit coefficient, metres.
 struct ShapeComponent {

