@@ -30,7 +30,9 @@ bool file_exists(const std::string& name, void* user) {
     auto& access = *static_cast<FileAccess*>(user);
     std::error_code ignored;
     if (!inside(access.folder, name)) {
-        if (access.refusal.empty()) access.refusal = "names a file outside its folder: " + name;
+        // tinygltf also looks in the working directory, as "./name": that is not the file's doing.
+        if (access.refusal.empty() && name.rfind("./", 0) != 0)
+            access.refusal = "names a file outside its folder: " + name;
         return false;
     }
     return std::filesystem::is_regular_file(name, ignored);
