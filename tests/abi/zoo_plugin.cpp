@@ -125,15 +125,16 @@ toile_instance prototype{sizeof(toile_instance),
                              if (std::strcmp(id, TOILE_SKINNING) != 0) return nullptr;
                              return is("kind_missing") ? nullptr : &table;
                          }};
-Animal* newest = nullptr; // keeps one that the host may not destroy reachable
+Animal* volatile newest = nullptr; // keeps one that the host may not destroy reachable
 
 toile_instance* create(const toile_host* by, const char* id) {
     if (std::strcmp(id, descriptor.id) != 0) return nullptr;
     host = by;
     if (is("create_fails")) return nullptr;
-    newest = new Animal{prototype, {}, {}};
-    newest->instance.plugin_data = newest;
-    return &newest->instance;
+    auto* made = new Animal{prototype, {}, {}};
+    made->instance.plugin_data = made;
+    newest = made;
+    return &made->instance;
 }
 
 toile_status entry_init(const char*) {

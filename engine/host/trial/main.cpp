@@ -50,7 +50,7 @@ int run(const std::string& mode, const char* file) {
 } // namespace
 
 // A crash shall end this process by its signal, also where sanitizers would report it.
-extern "C" const char* __asan_default_options() { // NOLINT
+extern "C" [[gnu::visibility("default")]] const char* __asan_default_options() { // NOLINT
     return "handle_segv=0:handle_sigbus=0:handle_sigill=0:handle_sigfpe=0:detect_leaks=0";
 }
 
