@@ -16,10 +16,11 @@ struct GlobalOptions {
     bool verbose = false;                              ///< --verbose
 };
 
-/// view
+/// One group of subcommands each.
 void add_avatar_commands(CLI::App& app, const GlobalOptions& options);
+void add_mirror_commands(CLI::App& app, const GlobalOptions& options);
+void add_tryon_commands(CLI::App& app, const GlobalOptions& options);
 void add_view_commands(CLI::App& app, const GlobalOptions& options);
-/// plugin list, plugin check
 void add_plugin_commands(CLI::App& app, const GlobalOptions& options);
 
 } // namespace toile::apps

@@ -22,6 +22,8 @@ int run(int argc, char** argv) {
     app.add_option("--threads", options.threads, "Threads to compute with; 0: all cores");
     app.add_flag("--verbose", options.verbose, "Say more on standard error");
     toile::apps::add_avatar_commands(app, options);
+    toile::apps::add_mirror_commands(app, options);
+    toile::apps::add_tryon_commands(app, options);
     toile::apps::add_view_commands(app, options);
     toile::apps::add_plugin_commands(app, options);
     app.parse_complete_callback([&] {

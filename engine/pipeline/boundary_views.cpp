@@ -3,21 +3,21 @@
 namespace toile::pipeline {
 namespace {
 
+using host::view_of;
+
 toile_mesh mesh_view(const geometry::TriangleMesh& mesh, std::span<const Vec2f> corner_coords,
                      std::uint64_t topology_id) {
-    toile_mesh out{};
-    out.size = sizeof(out);
-    out.positions = view_of(std::span(mesh.positions), TOILE_F32X3);
-    out.normals = view_of(std::span(mesh.normals), TOILE_F32X3);
-    out.triangles = view_of(std::span(mesh.triangles), TOILE_U32X3);
-    out.corner_coords = view_of(corner_coords, TOILE_F32X2);
+    auto out = host::sized<toile_mesh>();
+    out.positions = view_of(mesh.positions);
+    out.normals = view_of(mesh.normals);
+    out.triangles = view_of(mesh.triangles);
+    out.corner_coords = view_of(corner_coords);
     out.topology_id = topology_id;
     return out;
 }
 
 toile_fabric fabric_of(const garment::Fabric& fabric) {
-    toile_fabric out{};
-    out.size = sizeof(out);
+    auto out = host::sized<toile_fabric>();
     out.density_kg_m2 = static_cast<float>(fabric.density_kg_m2);
     out.thickness_m = static_cast<float>(fabric.thickness_m);
     out.stretch_warp_n_m = static_cast<float>(fabric.stretch_warp_n_m);
@@ -44,14 +44,14 @@ BoundaryBody::BoundaryBody(std::shared_ptr<const body::BodyModel> model, std::ui
     abi_.size = sizeof(abi_);
     abi_.revision = revision;
     abi_.model_id = model_->id.c_str();
-    abi_.coefficients = view_of(std::span<const float>(), TOILE_F32);
+    abi_.coefficients = view_of(std::span<const float>());
     abi_.rest = mesh_view(model_->rest, {}, revision);
-    abi_.rest_joints = view_of(std::span<const Vec3f>(model_->skeleton.rest_positions), TOILE_F32X3);
-    abi_.joint_indices = view_of(std::span(model_->skin.joints), TOILE_U16X4);
-    abi_.joint_weights = view_of(std::span(model_->skin.weights), TOILE_F32X4);
-    abi_.part_labels = view_of(std::span<const std::uint8_t>(parts_), TOILE_U8);
-    abi_.landmarks = view_of(std::span<const toile_landmark>(landmarks_), TOILE_STRUCT);
-    abi_.measurements = view_of(std::span<const toile_measurement>(measurements_), TOILE_STRUCT);
+    abi_.rest_joints = view_of(model_->skeleton.rest_positions);
+    abi_.joint_indices = view_of(model_->skin.joints);
+    abi_.joint_weights = view_of(model_->skin.weights);
+    abi_.part_labels = view_of(parts_);
+    abi_.landmarks = view_of(landmarks_);
+    abi_.measurements = view_of(measurements_);
 }
 
 BoundaryGarment::BoundaryGarment(std::shared_ptr<const garment::GarmentPackage> package,
@@ -65,9 +65,9 @@ BoundaryGarment::BoundaryGarment(std::shared_ptr<const garment::GarmentPackage> 
     abi_.version = manifest.version.c_str();
     abi_.size_name = size_.entry.name.c_str();
     abi_.simulation = mesh_view(size_.simulation, size_.material_coords, 1);
-    abi_.joint_indices = view_of(std::span(size_.skin.joints), TOILE_U16X4);
-    abi_.joint_weights = view_of(std::span(size_.skin.weights), TOILE_F32X4);
-    abi_.pins = view_of(std::span(package_->pins), TOILE_F32);
+    abi_.joint_indices = view_of(size_.skin.joints);
+    abi_.joint_weights = view_of(size_.skin.weights);
+    abi_.pins = view_of(package_->pins);
     abi_.made_on = made_on_ ? &made_on_->abi() : nullptr;
     abi_.fabric = fabric_of(manifest.fabric);
     abi_.ease_m = static_cast<float>(manifest.ease_m);

@@ -4,22 +4,13 @@
 #include "abi/toile.h"
 #include "body/body_model.h"
 #include "garment/package.h"
+#include "host/views.h"
 
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace toile::pipeline {
-
-/// View of `count` tightly packed elements of one TOILE_* format.
-template <class T>
-[[nodiscard]] toile_view view_of(std::span<const T> data, std::uint32_t format) {
-    return {data.data(), static_cast<std::uint32_t>(data.size()), sizeof(T), format, 0};
-}
-template <class T>
-[[nodiscard]] toile_view_mut view_of(std::span<T> data, std::uint32_t format) {
-    return {data.data(), static_cast<std::uint32_t>(data.size()), sizeof(T), format, 0};
-}
 
 /// A body model as a `toile_body`. Not movable: the struct points into it.
 class BoundaryBody {

@@ -40,12 +40,21 @@ void write_report(const RunReport& report, const std::filesystem::path& file) {
     if (report.picture_latency) json["latency"]["picture"] = to_json(*report.picture_latency);
     if (report.garment_state_latency)
         json["latency"]["garment_state"] = to_json(*report.garment_state_latency);
-    json["garment"] = {
-        {"deep_fraction_max", report.deep_fraction_max},
-        {"deep_fraction_self_intersecting_max", report.deep_fraction_self_intersecting_max},
-        {"positions_digest", report.positions_digest},
-    };
-    json["skin"] = {{"visible_fraction_max", report.skin_visible_fraction_max}};
+    if (report.contact) {
+        const ContactWorst& worst = *report.contact;
+        json["garment"] = {
+            {"deep_fraction_max", worst.deep_fraction},
+            {"deep_fraction_max_frame", worst.deep_frame},
+            {"deepest_max_m", worst.deepest_m},
+            {"deep_fraction_self_intersecting_max", worst.deep_fraction_apart},
+        };
+        json["skin"] = {
+            {"visible_fraction_max", worst.visible_fraction},
+            {"visible_fraction_max_frame", worst.visible_frame},
+            {"visible_fraction_self_intersecting_max", worst.visible_fraction_apart},
+        };
+    }
+    json["garment"]["positions_digest"] = report.positions_digest;
     json["versions"] = report.versions;
     json["seed"] = report.seed;
     std::ofstream out(file, std::ios::binary);

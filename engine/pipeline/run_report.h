@@ -1,6 +1,7 @@
 // What a run tells about itself: a table for people, and the file of --report.
 #pragma once
 
+#include "pipeline/contact_watch.h"
 #include "pipeline/stage_clock.h"
 
 #include <cstdint>
@@ -25,10 +26,8 @@ struct RunReport {
     Quantiles compute;                       ///< CPU, all but drawing
     std::optional<Latency> picture_latency;
     std::optional<Latency> garment_state_latency;
-    double deep_fraction_max = 0.0;
-    double deep_fraction_self_intersecting_max = 0.0; ///< where the body cuts itself, apart
-    double skin_visible_fraction_max = 0.0;
-    std::string positions_digest; ///< of every garment position of every frame
+    std::optional<ContactWorst> contact; ///< when it was measured
+    std::string positions_digest;        ///< of every garment position of every frame
     std::map<std::string, std::string> versions;
     std::uint64_t seed = 0;
 };

@@ -1,0 +1,105 @@
+#include "apps/fitting_room.h"
+
+#include "core/error.h"
+#include "garment/size_choice.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace toile::apps {
+namespace {
+
+constexpr std::uint32_t kMostVertices = 200'000;
+constexpr std::uint32_t kMostTriangles = 400'000;
+
+host::RegistryOptions registry_options(const GlobalOptions& options) {
+    host::RegistryOptions out;
+    out.folders = options.plugin_folders;
+    return out;
+}
+
+pipeline::DressingOptions dressing_options(const GlobalOptions& options, bool live_clock) {
+    pipeline::DressingOptions out;
+    out.limits.size = sizeof(out.limits);
+    out.limits.max_people = 1;
+    out.limits.max_vertices = kMostVertices;
+    out.limits.max_triangles = kMostTriangles;
+    out.limits.live_clock = live_clock ? 1 : 0;
+    out.limits.frame_budget_s = 1.0 / 30.0;
+    out.limits.random_seed = options.seed;
+    return out;
+}
+
+std::string known(const std::vector<std::string>& ids) {
+    std::string text;
+    for (const std::string& id : ids)
+        text += (text.empty() ? "" : ", ") + id;
+    return text;
+}
+
+} // namespace
+
+std::vector<std::string> split_names(const std::string& list, const std::string& option) {
+    std::vector<std::string> out;
+    std::istringstream in(list);
+    for (std::string name; std::getline(in, name, ',');) {
+        if (name.empty()) throw UsageError(option + " '" + list + "': a name is empty");
+        if (std::find(out.begin(), out.end(), name) != out.end())
+            throw UsageError(option + " '" + list + "': " + name + " is named twice");
+        out.push_back(name);
+    }
+    if (out.empty()) throw UsageError(option + " needs at least one name");
+    return out;
+}
+
+FittingRoom::FittingRoom(const GlobalOptions& options, const Outfit& outfit, bool live_clock)
+    : services_(options.threads), registry_(services_, registry_options(options)),
+      job_({}, &host::interrupt_flag()), dressing_(dressing_options(options, live_clock)) {
+    dressing_.limits.thread_count = services_.thread_count();
+    body_ = load_body(outfit.body);
+    std::vector<std::shared_ptr<const pipeline::BoundaryGarment>> garments;
+    for (const std::string& id : outfit.garments)
+        garments.push_back(load_garment(id, outfit.size));
+    std::stable_sort(garments.begin(), garments.end(),
+                     [](const auto& a, const auto& b) { return a->abi().layer < b->abi().layer; });
+    person_ = std::make_unique<pipeline::DressedPerson>(registry_, services_, body_,
+                                                        std::move(garments), dressing_, job_);
+}
+
+FittingRoom::~FittingRoom() = default;
+
+std::shared_ptr<const pipeline::BoundaryBody> FittingRoom::load_body(const std::string& id) {
+    namespace fs = std::filesystem;
+    const fs::path path(id);
+    if (path.has_extension() && fs::is_regular_file(path))
+        throw Error(id + ": only avatars can be dressed so far; choose one of " +
+                    known(body::list_avatars()) + ", or an avatar's folder");
+    const fs::path folder = fs::is_directory(path) ? path : body::find_avatar(id);
+    for (const auto& body : bodies_)
+        if (body->model().folder == folder) return body;
+    auto model = std::make_shared<const body::BodyModel>(body::load_body_model(folder));
+    bodies_.push_back(
+        std::make_shared<const pipeline::BoundaryBody>(std::move(model), next_revision_++));
+    return bodies_.back();
+}
+
+std::shared_ptr<const pipeline::BoundaryGarment>
+FittingRoom::load_garment(const std::string& id, const std::string& size) {
+    auto package = garment::load_package(garment::find_garment(id));
+    const garment::GarmentSize* chosen = nullptr;
+    if (size == "auto" && package->sizes.size() > 1) {
+        const auto choice = garment::choose_size(*package, body_->model().measurements);
+        chosen = &package->sizes[choice.index];
+        choices_.push_back(package->manifest.id + ": " + choice.reason);
+    } else {
+        chosen = size == "auto" ? &package->sizes.front() : &package->size(size);
+        choices_.push_back(package->manifest.id + ": " + chosen->entry.name +
+                           (size == "auto" ? ", the only size" : ", as asked for"));
+    }
+    const std::string& made_on = package->manifest.made_on;
+    auto made = made_on.empty() ? nullptr : load_body(made_on);
+    return std::make_shared<const pipeline::BoundaryGarment>(std::move(package), *chosen,
+                                                             std::move(made));
+}
+
+} // namespace toile::apps

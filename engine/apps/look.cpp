@@ -1,0 +1,168 @@
+#include "apps/look.h"
+
+#include "assets/files.h"
+#include "core/error.h"
+#include "render/import.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace toile::apps {
+namespace {
+
+constexpr double kFollowTime_s = 0.8;
+
+// Parts that no visible triangle may belong to, because garments say so.
+std::set<body::Part> masked_parts(const pipeline::DressedPerson& person) {
+    std::set<body::Part> out;
+    for (const pipeline::WornGarment& garment : person.garments())
+        for (const body::Part part : garment.garment().package().manifest.body_mask)
+            out.insert(part);
+    return out;
+}
+
+// The material that a colourway gives to a primitive.
+int material_index(const assets::Scene& scene, const assets::Primitive& primitive,
+                   const std::string& material_variant) {
+    for (std::size_t i = 0; i < scene.variants.size(); ++i)
+        if (scene.variants[i] == material_variant && i < primitive.variant_materials.size() &&
+            primitive.variant_materials[i] != assets::kNone)
+            return primitive.variant_materials[i];
+    return primitive.material;
+}
+
+const garment::Variant* find_variant(const garment::Manifest& manifest, const std::string& name) {
+    for (const garment::Variant& variant : manifest.variants)
+        if (variant.name == name) return &variant;
+    return name.empty() && !manifest.variants.empty() ? &manifest.variants.front() : nullptr;
+}
+
+} // namespace
+
+Look::Look(render::Context& context, const render::RendererOptions& options,
+           const pipeline::DressedPerson& person, const std::string& variant)
+    : person_(person), renderer_(context, options) {
+    bool worn = variant.empty();
+    for (const pipeline::WornGarment& garment : person_.garments()) {
+        const auto& variants = garment.garment().package().manifest.variants;
+        worn = worn || std::any_of(variants.begin(), variants.end(),
+                                   [&](const auto& v) { return v.name == variant; });
+    }
+    if (!worn) throw UsageError("no garment has a colourway named '" + variant + "'");
+    add_body();
+    for (const pipeline::WornGarment& garment : person_.garments())
+        add_garment(garment, variant);
+}
+
+void Look::add_body() {
+    const body::BodyModel& model = person_.body().model();
+    const assets::Scene appearance = assets::load_scene(model.folder / (model.id + ".glb"));
+    const auto materials = render::add_materials(renderer_, appearance);
+
+    const std::set<body::Part> masked = masked_parts(person_);
+    std::vector<Triangle> triangles;
+    for (std::size_t i = 0; i < model.layout.triangles.size(); ++i) {
+        const Triangle& welded = model.rest.triangles[i];
+        const bool hidden =
+            !masked.empty() && std::all_of(welded.begin(), welded.end(), [&](std::uint32_t v) {
+                return masked.contains(model.parts[v]);
+            });
+        if (!hidden) triangles.push_back(model.layout.triangles[i]);
+    }
+    render::MeshDescription description;
+    description.triangles = triangles;
+    description.source = model.layout.welded;
+    description.texcoords = model.layout.texcoords;
+    description.positions = person_.posed().positions;
+    description.normals = person_.posed().normals;
+    body_ = renderer_.add_mesh(description);
+
+    render::Instance instance;
+    instance.mesh = body_;
+    instance.material = materials.empty() ? renderer_.add_material(render::mannequin_material())
+                                          : materials.front();
+    scene_.instances.push_back(instance);
+}
+
+void Look::add_garment(const pipeline::WornGarment& garment, const std::string& variant) {
+    const garment::GarmentPackage& package = garment.garment().package();
+    const garment::Variant* colourway = find_variant(package.manifest, variant);
+    assets::Scene scene = garment.garment().size().render;
+    if (colourway != nullptr && colourway->base_color)
+        for (assets::Material& material : scene.materials)
+            material.base_color.head<3>() =
+                material.base_color.head<3>().cwiseProduct(*colourway->base_color);
+    const auto materials = render::add_materials(renderer_, scene);
+
+    for (const auto& surface : garment.surfaces) {
+        render::MeshDescription description;
+        description.triangles = surface.primitive->triangles;
+        description.texcoords = surface.primitive->texcoords;
+        description.positions = surface.positions;
+        description.normals = surface.normals;
+        surfaces_.push_back(renderer_.add_mesh(description));
+
+        const int index =
+            material_index(scene, *surface.primitive,
+                           colourway != nullptr ? colourway->material_variant : std::string());
+        render::Instance instance;
+        instance.mesh = surfaces_.back();
+        instance.material =
+            index == assets::kNone
+                ? renderer_.add_material(render::cloth_material(Vec3f::Constant(0.5f)))
+                : materials.at(static_cast<std::size_t>(index));
+        scene_.instances.push_back(instance);
+    }
+}
+
+void Look::update() {
+    const auto check = [](render::Status status) {
+        if (status != render::Status::ok)
+            throw Error(std::string("a surface cannot be drawn: ") + render::text(status));
+    };
+    check(renderer_.update_mesh(body_, person_.posed().positions, person_.posed().normals));
+    std::size_t next = 0;
+    for (const pipeline::WornGarment& garment : person_.garments())
+        for (const auto& surface : garment.surfaces)
+            check(renderer_.update_mesh(surfaces_[next++], surface.positions, surface.normals));
+}
+
+void Look::draw(const render::View& view, const render::Box& box) {
+    scene_.camera =
+        render::frame_view(view, box.low, box.high, renderer_.width(), renderer_.height());
+    scene_.lighting = render::studio_lighting(scene_.camera);
+    renderer_.draw(scene_);
+}
+
+render::Box bounds_now(const pipeline::DressedPerson& person) {
+    render::Box box;
+    for (const Vec3f& p : person.posed().positions)
+        box.add(p);
+    for (const pipeline::WornGarment& garment : person.garments())
+        for (const Vec3f& p : garment.positions)
+            box.add(p);
+    box.low.y() = std::min(box.low.y(), 0.0f);
+    return box;
+}
+
+StageBox::StageBox(const pipeline::DressedPerson& person) {
+    render::Box rest;
+    for (const Vec3f& p : person.body().model().rest.positions)
+        rest.add(p);
+    stature_ = rest.high.y() - rest.low.y();
+    centre_ = Vec3f::Zero();
+    follow(person, 1e3);
+}
+
+void StageBox::follow(const pipeline::DressedPerson& person, double dt_s) {
+    const auto& hips = person.posed().joints[0].position;
+    const Vec3f goal(hips[0], 0.0f, hips[2]);
+    centre_ += static_cast<float>(1.0 - std::exp(-dt_s / kFollowTime_s)) * (goal - centre_);
+    const Vec3f half(0.52f * stature_, 0.0f, 0.35f * stature_);
+    box_.low = centre_ - half;
+    box_.high = centre_ + half + Vec3f(0.0f, 1.1f * stature_, 0.0f);
+}
+
+} // namespace toile::apps

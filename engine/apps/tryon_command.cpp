@@ -1,0 +1,176 @@
+// toile tryon: an avatar dressed and drawn, standing in a pose or moving through a motion.
+#include "apps/commands.h"
+#include "apps/contact_sheet.h"
+#include "apps/fitting_room.h"
+#include "apps/look.h"
+#include "apps/look_file.h"
+#include "apps/picture_folder.h"
+#include "apps/picture_options.h"
+#include "apps/run_output.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "pipeline/motion_source.h"
+#include "pipeline/try_on_run.h"
+
+namespace toile::apps {
+namespace {
+
+struct TryOnOptions {
+    std::string body = "mannequin";
+    std::string garments;
+    std::string size = "auto";
+    std::string pose;
+    std::string animation;
+    std::string out;
+    std::string views = "front";
+    std::string glb;
+    std::string report;
+    std::uint64_t frames = 0;
+    PictureOptions picture;
+};
+
+constexpr double kFramesPerSecond = 30.0;
+constexpr double kSettle_s = 2.0; // how long a still is left to come to hang
+
+class TryOn {
+  public:
+    TryOn(const TryOnOptions& options, const GlobalOptions& global)
+        : options_(options),
+          room_(global, {options.body, split_names(options.garments, "--garment"), options.size},
+                false),
+          volumes_(body::measure_volumes(room_.body().model().skeleton,
+                                         room_.body().model().rest.positions,
+                                         room_.body().model().parts)),
+          views_(render::views_from_names(options.views)) {
+        for (const std::string& choice : room_.choices())
+            log::info(choice);
+        run_options_.measure_contact = !options_.report.empty();
+        run_options_.seed = global.seed;
+        run_options_.interrupted = [] { return host::interrupt_flag().load(); };
+    }
+
+    // Stands in the pose until the cloth hangs, then draws every view side by side.
+    void still() {
+        const body::Skeleton& skeleton = room_.body().model().skeleton;
+        const body::Pose pose = options_.pose.empty()
+                                    ? body::rest_pose(skeleton)
+                                    : body::load_pose(options_.pose, skeleton, &volumes_);
+        pipeline::MotionSource source(pipeline::still(pose), skeleton, kFramesPerSecond, kSettle_s);
+        pipeline::TryOnRun run(source, room_.person(), run_options_);
+        while (run.next()) {
+        }
+        const auto context = render::make_offscreen_context();
+        Look look(*context, options_.picture.renderer(), room_.person(),
+                  options_.picture.colourway);
+        look.update();
+        imaging::save_image(draw(look, bounds_now(room_.person())), options_.out);
+        finish(run);
+    }
+
+    // Every frame of a motion as a picture.
+    void moving() {
+        const body::Skeleton& skeleton = room_.body().model().skeleton;
+        const body::Motion motion = body::load_motion(options_.animation, skeleton, &volumes_);
+        pipeline::MotionSource source(motion, skeleton, kFramesPerSecond);
+        if (options_.frames > 0) run_options_.most_frames = options_.frames;
+        pipeline::TryOnRun run(source, room_.person(), run_options_);
+        PictureFolder pictures(options_.out);
+        TrackFile track(options_.out);
+        const auto context = render::make_offscreen_context();
+        Look look(*context, options_.picture.renderer(), room_.person(),
+                  options_.picture.colourway);
+        RunProgress progress;
+        std::unique_ptr<StageBox> stage;
+        while (run.next()) {
+            if (!stage)
+                stage = std::make_unique<StageBox>(room_.person());
+            else
+                stage->follow(room_.person(), 1.0 / kFramesPerSecond);
+            run.begin_drawing();
+            look.update();
+            const imaging::Image picture = draw(look, stage->box());
+            run.end_drawing();
+            pictures.add(picture);
+            track.add(run.frame());
+            progress.frame();
+        }
+        pictures.make_film("tryon", kFramesPerSecond);
+        finish(run);
+    }
+
+  private:
+    // Every view, side by side.
+    imaging::Image draw(Look& look, const render::Box& box) {
+        std::vector<imaging::Image> pictures;
+        for (const render::View& view : views_) {
+            look.draw(view, box);
+            pictures.push_back(look.renderer().read());
+        }
+        return side_by_side(pictures);
+    }
+
+    void finish(pipeline::TryOnRun& run) {
+        for (const std::string& fault : room_.person().faults())
+            log::warning(fault);
+        if (!options_.glb.empty()) save_look(room_.person(), options_.glb);
+        put_out_report(run.report(), room_, options_.report);
+    }
+
+    const TryOnOptions& options_;
+    FittingRoom room_;
+    body::BodyVolumes volumes_;
+    std::vector<render::View> views_;
+    pipeline::RunOptions run_options_;
+};
+
+void try_on(const TryOnOptions& options, const GlobalOptions& global) {
+    if (!options.pose.empty() && !options.animation.empty())
+        throw UsageError("tryon takes either --pose or --animation, not both");
+    if (options.animation.empty() && std::filesystem::path(options.out).extension() != ".png")
+        throw UsageError("tryon --out '" + options.out +
+                         "': a still is written as .png (with --animation: a folder)");
+    host::catch_interrupts();
+    TryOn look(options, global);
+    if (options.animation.empty())
+        look.still();
+    else
+        look.moving();
+}
+
+} // namespace
+
+void add_tryon_commands(CLI::App& app, const GlobalOptions& global) {
+    CLI::App* command = app.add_subcommand("tryon", "Dresses an avatar and draws it");
+    auto options = std::make_shared<TryOnOptions>();
+    command->add_option("--body", options->body, "Avatar to dress")
+        ->type_name("AVATAR")
+        ->capture_default_str();
+    command->add_option("--garment", options->garments, "Garments, by id, folder or zip")
+        ->type_name("ID[,ID...]")
+        ->required();
+    command->add_option("--size", options->size, "Size of the garments; auto: by the size chart")
+        ->capture_default_str();
+    command->add_option("--pose", options->pose, "Pose or motion file; its first frame is taken")
+        ->type_name("FILE");
+    command->add_option("--animation", options->animation, "Motion to play: .bvh, .json, .jsonl")
+        ->type_name("FILE");
+    command->add_option("--out", options->out, "Picture; with --animation a folder of pictures")
+        ->type_name("look.png|DIR")
+        ->required();
+    command
+        ->add_option("--views", options->views,
+                     "Views, side by side: front, back, left, right, ...")
+        ->type_name("VIEW[,VIEW...]")
+        ->capture_default_str();
+    command->add_option("--glb", options->glb, "Writes the dressed body as a 3D file too")
+        ->type_name("look.glb");
+    command->add_option("--frames", options->frames, "With --animation: stops after this many");
+    command->add_option("--report", options->report, "File for the figures of the run, as JSON")
+        ->type_name("FILE");
+    options->picture.add_to(*command);
+    command->footer("Example: toile tryon --body woman --garment t-shirt,skirt --views front,back "
+                    "--out look.png");
+    command->callback([options, &global] { try_on(*options, global); });
+}
+
+} // namespace toile::apps

@@ -1,0 +1,70 @@
+// One garment on one person: bound by the garment plugin, with the buffers that the cloth fills.
+#pragma once
+
+#include "body/skinning.h"
+#include "garment/embedding.h"
+#include "host/instance.h"
+#include "pipeline/boundary_views.h"
+#include "pipeline/frame_guard.h"
+
+#include <memory>
+#include <string>
+
+namespace toile::pipeline {
+
+/// Not movable.
+class WornGarment {
+  public:
+    /// Binds the garment to the body. \throw Error [worker]
+    WornGarment(std::shared_ptr<const host::Plugin> plugin, host::Services& services,
+                const BoundaryBody& body, std::shared_ptr<const BoundaryGarment> garment,
+                const toile_limits& limits, host::Job& job);
+    WornGarment(const WornGarment&) = delete;
+    WornGarment& operator=(const WornGarment&) = delete;
+
+    /// What the cloth world is to be told: rest, weights, attachment. Views into this.
+    [[nodiscard]] toile_cloth_garment cloth_description() const;
+
+    /// Fills `targets` for a posed body; where the plugin fails, plain skinning of the binding
+    /// steps in. [frame]
+    void update_targets(const toile_body_state& state,
+                        const body::JointTransforms& skinning) noexcept;
+
+    /// Render meshes for the cloth as it is now. [frame]
+    void update_surfaces() noexcept;
+
+    [[nodiscard]] const BoundaryGarment& garment() const noexcept { return *garment_; }
+    [[nodiscard]] const std::vector<Triangle>& triangles() const {
+        return garment_->size().simulation.triangles;
+    }
+    [[nodiscard]] std::string fault() { return guard_.fault(); }
+
+    std::uint32_t handle = 0;     ///< of the cloth world
+    std::vector<Vec3f> bound;     ///< (nv) on the body in its rest pose
+    std::vector<Vec3f> targets;   ///< (nv) where plain skinning would have it
+    std::vector<Vec3f> positions; ///< (nv) the cloth
+    std::vector<Vec3f> normals;   ///< (nv)
+
+    /// One drawable of the package, positions as worn; material as in its scene.
+    struct Surface {
+        const assets::Primitive* primitive = nullptr;
+        std::vector<Vec3f> positions; ///< (nr)
+        std::vector<Vec3f> normals;   ///< (nr)
+    };
+    std::vector<Surface> surfaces;
+
+  private:
+    void bind(const BoundaryBody& body, host::Job& job);
+
+    std::shared_ptr<const BoundaryGarment> garment_;
+    host::Instance instance_;
+    const toile_garment& table_;
+    FrameGuard guard_;
+    body::SkinWeights weights_;
+    std::vector<float> attachment_;
+    std::unique_ptr<body::SkinnedSurface> fallback_;
+    garment::SurfaceEmbedding embedding_;
+    garment::SurfaceEmbedding::Scratch scratch_;
+};
+
+} // namespace toile::pipeline
