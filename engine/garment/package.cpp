@@ -7,6 +7,7 @@
 #include "garment/size_reader.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace toile::garment {
 namespace fs = std::filesystem;
@@ -30,16 +31,15 @@ std::string read_manifest_text(const PackageFiles& files) {
 }
 
 /// The body the package was made on; nothing (with a fault) when there is no such avatar.
-std::optional<body::BodyModel> find_body(const Manifest& manifest, const std::string& shown,
-                                         Faults& faults) {
-    std::optional<body::BodyModel> out;
-    if (manifest.made_on.empty()) return out;
+std::optional<geometry::TriangleMesh> find_body(const Manifest& manifest, const std::string& shown,
+                                                const PackageLimits& limits, Faults& faults) {
+    if (manifest.made_on.empty() || !limits.body_of) return std::nullopt;
     try {
-        out = body::load_body_model(body::find_avatar(manifest.made_on));
+        return limits.body_of(manifest.made_on);
     } catch (const Error& e) {
         faults.push_back({FaultCode::made_on, shown + ": /made_on: " + e.what()});
     }
-    return out;
+    return std::nullopt;
 }
 
 GarmentPackage read_package(const fs::path& source, const PackageLimits& limits, Faults& faults) {
@@ -49,7 +49,7 @@ GarmentPackage read_package(const fs::path& source, const PackageLimits& limits,
         const PackageFiles files(source, limits);
         const std::string shown = files.shown("garment.json");
         package.manifest = read_manifest(read_manifest_text(files), shown, faults);
-        const auto body = find_body(package.manifest, shown, faults);
+        const auto body = find_body(package.manifest, shown, limits, faults);
         for (const SizeEntry& entry : package.manifest.sizes) {
             GarmentSize size;
             if (entry.mesh.empty() || !read_size_meshes(files, entry, size, faults, package.notes))
@@ -57,7 +57,7 @@ GarmentPackage read_package(const fs::path& source, const PackageLimits& limits,
             const std::string mesh = files.shown(entry.mesh);
             const std::size_t before = faults.size();
             check_simulation(size, mesh, limits, faults);
-            check_unit(size, mesh, body ? &body->rest : nullptr, faults);
+            check_unit(size, mesh, body ? &*body : nullptr, faults);
             if (faults.size() == before) check_render(size, mesh, limits, faults);
             package.sizes.push_back(std::move(size));
         }

@@ -7,6 +7,7 @@
 #include "geometry/mesh.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 namespace toile::garment {
@@ -41,6 +42,9 @@ struct PackageLimits {
     std::size_t max_package_bytes = 512u << 20; ///< all files of an unpacked zip
     std::size_t max_vertices = 100'000;         ///< of a simulation mesh
     double max_render_distance = 0.05;          ///< metres from the simulation mesh
+    /// Rest surface of the avatar that a package was made on, e.g. from load_body_model; throws
+    /// Error when there is none. Empty: the mesh is held against the bounds of any person.
+    std::function<geometry::TriangleMesh(const std::string& avatar)> body_of;
 };
 
 /// Reads a folder or .zip. \throw PackageError with the first fault
