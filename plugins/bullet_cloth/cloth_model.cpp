@@ -50,6 +50,12 @@ void check(const ClothMesh& mesh, const Fabric& fabric) {
             throw Error("garment mesh: vertex " + std::to_string(i) + " is not finite");
         }
     }
+    for (std::size_t i = 0; i < mesh.corner_coords.size(); ++i) {
+        if (!mesh.corner_coords[i].allFinite()) {
+            throw Error("garment mesh: a material coordinate of triangle " + std::to_string(i / 3) +
+                        " is not finite");
+        }
+    }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         for (const std::uint32_t v : mesh.triangles[t]) {
             if (v >= mesh.positions.size()) {

@@ -16,6 +16,22 @@ static_assert(kBodyJoints == TOILE_JOINT_COUNT);
 constexpr std::array<std::uint8_t, kBodyJoints> kParent{0,  0,  1,  2, 3,  4,  3,  6, 7,  8,  3,
                                                         10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
 
+/// Joints whose surface runs on from a joint's without a limb between: a walk gets there.
+constexpr std::array<JointMask, kBodyJoints> connected() {
+    // hips, spine, chest, upper chest, neck, both shoulders
+    constexpr JointMask kTrunk = 0b0000000000010001011111u;
+    std::array<JointMask, kBodyJoints> next{};
+    for (std::size_t j = 0; j < kBodyJoints; ++j) {
+        next[j] |= (1u << j) | (1u << kParent[j]);
+        next[kParent[j]] |= 1u << j;
+        if (((kTrunk >> j) & 1u) != 0) {
+            next[j] |= kTrunk;
+        }
+    }
+    return next;
+}
+constexpr std::array<JointMask, kBodyJoints> kConnected = connected();
+
 /// Joints that move a vertex noticeably, and those next to them.
 JointMask covered_parts(const std::array<std::uint16_t, 4>& joints,
                         const std::array<float, 4>& weights) {
@@ -160,8 +176,14 @@ void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sa
     constexpr float kApart = 0.02f;     // m, between two places worth two contacts
     constexpr float kOutside = -0.002f; // m, a new place is first met from outside
     const float own_distance = signed_distance(body, p, own);
+    // Close to its own place, a walk has found the nearest of what is connected to it.
+    const JointMask skipped =
+        own_distance < kNearSkin ? mask_[sample] & kConnected[body.joint_of(own.triangle)] : 0u;
     SurfacePoint other;
     for (std::size_t joint = 0; joint < kBodyJoints; ++joint) {
+        if (((skipped >> joint) & 1u) != 0) {
+            continue;
+        }
         const std::uint32_t start = body.start_on(joint, p, settings.reach, period);
         if (start == kNone) {
             continue;

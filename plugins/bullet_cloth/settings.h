@@ -4,8 +4,8 @@
 namespace toile::bullet_cloth {
 
 struct Settings {
-    double substep_rate = 540.0; ///< 1/s
-    double contact_rate = 150.0; ///< 1/s, refreshes of the contact planes
+    double substep_rate = 480.0; ///< 1/s
+    double contact_rate = 90.0;  ///< 1/s, refreshes of the contact planes
     double margin = 0.003;       ///< m, kept free between skin and cloth
     double limit_edges = 4.0;    ///< reach of the length limits, mesh edges; 0: none
     double leash = 0.25;         ///< m, farthest a free vertex may be from its target
