@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
     toile::apps::add_avatar_commands(app, options);
     toile::apps::add_mirror_commands(app, options);
     toile::apps::add_tryon_commands(app, options);
+    toile::apps::add_compare_commands(app, options);
     toile::apps::add_view_commands(app, options);
     toile::apps::add_plugin_commands(app, options);
     toile::apps::add_garment_commands(app, options);

@@ -16,7 +16,9 @@ namespace toile::render {
 namespace {
 
 constexpr int kLargest = 8192;
-constexpr int kShadowSide = 2048;
+int shadow_side(Quality quality) {
+    return quality == Quality::high ? 2048 : 1024;
+}
 constexpr std::size_t kMaterials = 256; // an index fits in 8 bits; 0 is "none"
 // Kinds of pixels, as in common.glsl.
 constexpr float kMeshKind = 0.25f;
@@ -39,7 +41,7 @@ enum Variant : unsigned { kTextured = 1, kHoles = 2, kNormalMap = 4, kVariants =
 
 std::string defines(unsigned variant) {
     std::string text;
-    if ((variant & kTextured) != 0) text += "#define TEXTURED\n";
+    if (variant != 0) text += "#define TEXTURED\n";
     if ((variant & kHoles) != 0) text += "#define HOLES\n";
     if ((variant & kNormalMap) != 0) text += "#define NORMAL_MAP\n";
     return text;
@@ -141,8 +143,8 @@ Renderer::Impl::Impl(Context& context, const RendererOptions& options)
                   {shaders::k_common, "#define ON_FLOOR\n", shaders::k_blur_fragment}),
       classify_(gl_, "classify", {shaders::k_common, shaders::k_screen_vertex},
                 {shaders::k_common, shaders::k_classify_fragment}),
-      shadow_map_(make_shadow_map(gl_, kShadowSide)), frame_buffer_(gl_, GlObject::Kind::buffer),
-      material_buffer_(gl_, GlObject::Kind::buffer),
+      shadow_map_(make_shadow_map(gl_, shadow_side(options.quality))),
+      frame_buffer_(gl_, GlObject::Kind::buffer), material_buffer_(gl_, GlObject::Kind::buffer),
       no_vertices_(gl_, GlObject::Kind::vertex_array),
       contact_texture_(
           make_target(gl_, GL_R16F, ContactMap::kSide, ContactMap::kSide, 1, "contact shadow")) {
@@ -178,7 +180,8 @@ const Program& Renderer::Impl::mesh_program(unsigned variant) {
         const std::string text = defines(variant);
         program = std::make_unique<Program>(
             gl_, "mesh",
-            std::initializer_list<const char*>{shaders::k_common, shaders::k_mesh_vertex},
+            std::initializer_list<const char*>{shaders::k_common, text.c_str(),
+                                               shaders::k_mesh_vertex},
             std::initializer_list<const char*>{shaders::k_common, text.c_str(),
                                                shaders::k_mesh_fragment});
     }
@@ -191,7 +194,8 @@ const Program& Renderer::Impl::depth_program(unsigned variant) {
         const std::string text = defines(variant & kHoles);
         program = std::make_unique<Program>(
             gl_, "depth",
-            std::initializer_list<const char*>{shaders::k_common, shaders::k_depth_vertex},
+            std::initializer_list<const char*>{shaders::k_common, text.c_str(),
+                                               shaders::k_depth_vertex},
             std::initializer_list<const char*>{shaders::k_common, text.c_str(),
                                                shaders::k_depth_fragment});
     }
@@ -260,7 +264,7 @@ void Renderer::Impl::fill_frame(const Scene& scene) {
     frame_.range.w() = static_cast<float>(supersampling(options_.quality));
     set_camera(frame_, scene.camera, visible);
     set_lighting(frame_, scene.lighting);
-    fit_shadow_map(frame_, scene.lighting.key_direction, casters, kShadowSide);
+    fit_shadow_map(frame_, scene.lighting.key_direction, casters, shadow_map_.width);
     frame_.target_size = size_of(targets_->drawn);
     frame_.visibility_size = size_of(targets_->blurred);
 

@@ -1,12 +1,14 @@
 // What is where: colour, normal towards the camera, material. Light comes later, once a pixel.
 // Variants TEXTURED, HOLES, NORMAL_MAP: a CPU rasteriser pays for every unused branch.
-in vec3 world_position;
 in vec3 world_normal;
-in vec2 surface_texcoord;
 uniform vec4 base_color;
 uniform float material; // index / 255; 0: hides what is behind it, is not seen
+#ifdef TEXTURED
+in vec2 surface_texcoord;
 uniform sampler2D base_color_texture;
+#endif
 #ifdef NORMAL_MAP
+in vec3 world_position;
 uniform float normal_scale;
 uniform sampler2D normal_texture;
 #endif
