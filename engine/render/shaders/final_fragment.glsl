@@ -42,20 +42,22 @@ void add(inout Group g, vec4 surface, vec3 n, float depth, bool wanted) {
 // Light of a group times its samples; a: minus the samples it covers.
 vec4 group_light(Group g, vec2 pixel) {
     float samples = max(g.color.a, 1e-3);
-    float depth = g.normal.w / samples;
+    // An empty group counts for nothing, but must not breed NaN on the way.
+    float depth = max(g.normal.w / samples, range.x);
     int material = int(g.material * 255.0 + 0.5);
     Surface s;
     s.albedo = g.color.rgb / samples;
     s.normal = normalize(g.normal.xyz + vec3(0.0, 0.0, 1e-6));
     s.position = world_point(pixel * target_size.zw, depth);
     s.sheen = materials[2 * material];
-    s.roughness = materials[2 * material + 1].x;
+    s.sheen.a = max(s.sheen.a, 0.1);
+    s.roughness = max(materials[2 * material + 1].x, 0.05);
     vec3 light = tone_map(shaded(s, visibility_at(pixel, depth)));
     float shown = g.color.a;
 #ifdef OCCLUSION
     shown *= 1.0 - hidden_share(pixel, depth);
 #endif
-    return vec4(light * shown, -shown);
+    return g.color.a > 0.5 ? vec4(light * shown, -shown) : vec4(0.0);
 }
 
 // Sum over the samples of one pixel of the target; a: how many samples the background has.

@@ -41,7 +41,8 @@ void main() {
 #ifdef HOLES
     if (base.a < 0.5) discard;
 #endif
-    vec3 n = normalize(world_normal);
+    float size2 = dot(world_normal, world_normal);
+    vec3 n = size2 > 1e-12 ? world_normal * inversesqrt(max(size2, 1e-12)) : vec3(0.0, 1.0, 0.0);
     n = gl_FrontFacing ? n : -n;
 #ifdef NORMAL_MAP
     n = mapped_normal(n);

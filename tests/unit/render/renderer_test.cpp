@@ -83,6 +83,10 @@ TEST_F(RendererTest, SamePictureTwiceAndInAnotherContext) {
     scene.background = {};
     const std::uint64_t first = hash(draw(scene));
     EXPECT_EQ(hash(draw(scene)), first);
+    // Silhouettes once held NaN that some contexts turned black: no dark pixel on a white ball.
+    const imaging::Image image = renderer_.read();
+    for (std::size_t i = 0; i < image.pixels.size(); i += 4)
+        ASSERT_GT(image.pixels[i], 60);
     const auto other = make_offscreen_context();
     Renderer renderer(*other, {96, 96});
     scene.instances[0].mesh = renderer.add_mesh(test::sphere(Vec3f(0, 1, 0), 0.3f).description());
