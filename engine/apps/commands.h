@@ -17,9 +17,7 @@ struct GlobalOptions {
 };
 
 /// One group of subcommands each.
-/// compare
 void add_compare_commands(CLI::App& app, const GlobalOptions& options);
-/// view
 void add_avatar_commands(CLI::App& app, const GlobalOptions& options);
 void add_mirror_commands(CLI::App& app, const GlobalOptions& options);
 void add_tryon_commands(CLI::App& app, const GlobalOptions& options);
