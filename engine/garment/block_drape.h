@@ -1,0 +1,33 @@
+// Lets a sewn block settle on its body: position-based cloth, quasi-static, set-up time only.
+#pragma once
+
+#include "garment/block_assembly.h"
+#include "garment/block_field.h"
+
+namespace toile::garment::block {
+
+struct DrapeOptions {
+    double clearance_m = 0.010;     ///< of vertices from the skin
+    double density_kg_m2 = 0.18;
+    double stretch_n_m = 600.0;     ///< force per width per unit strain
+    double bending = 0.05;          ///< share of a hinge's error mended per iteration
+    double friction = 0.3;
+    int shrink_steps = 300;         ///< without gravity, from the first guess to the flat sizes
+    int settle_steps = 1200;        ///< with gravity
+    int iterations = 6;             ///< per step of 1/240 s
+};
+
+/// An edge of the welded mesh and its length in the flat pattern (mean over both sides of a seam).
+struct RestEdge {
+    std::uint32_t a = 0, b = 0;
+    double length = 0.0;
+};
+[[nodiscard]] std::vector<RestEdge> rest_edges(std::span<const Triangle> triangles,
+                                               std::span<const Vec2f> material_coords);
+
+/// Moves `block.positions` to rest. `held` (nv) is 1 where a vertex keeps its place. The result is
+/// symmetric but for what contact with the body asks.
+void drape(const Assembly& assembly, SizedBlock& block, const DistanceField& body,
+           std::span<const std::uint8_t> held, const DrapeOptions& options);
+
+} // namespace toile::garment::block

@@ -1,0 +1,24 @@
+// A tube of rings around the trunk: where a garment starts before it is draped.
+#pragma once
+
+#include "garment/block_body.h"
+
+namespace toile::garment::block {
+
+/// Rings every centimetre, each widened until the tube is as long round as the cloth.
+class Loft {
+  public:
+    /// `girth_m(height)` is the cloth's girth; never nearer the body than `least_ease_m`.
+    Loft(const BodyProbe& body, double low_m, double high_m,
+         const std::function<double(double)>& girth_m, double least_ease_m);
+
+    /// Fraction as in Ring::at; heights are clamped to the tube's ends. Metres, world.
+    [[nodiscard]] Vec3d at(double fraction, double height_m) const;
+
+  private:
+    static constexpr int kSamples = 32; ///< on each of the front and back arcs
+    double low_ = 0.0;
+    std::vector<std::array<Vec3d, 2 * kSamples + 1>> rows_;
+};
+
+} // namespace toile::garment::block
