@@ -12,7 +12,7 @@ struct TShirtOptions {
     double cap_share = 0.60;        ///< height of the sleeve cap, of the armhole's
     double armhole_drop_m = 0.028;  ///< of the underarm point below the armpit
     double collar_m = 0.019;        ///< height of the rib band
-    double neck_ease_m = 0.020;     ///< of the neck seam outside the neck, at the shoulder
+    double neck_ease_m = 0.028;     ///< of the neck seam outside the neck, at the shoulder
     double sleeve_share = 0.64;     ///< of the upper arm that the sleeve covers
 };
 /// Panels front, back, sleeve_front, sleeve_back, collar_front, collar_back. The probe must

@@ -7,7 +7,8 @@
 namespace toile::garment::block {
 namespace {
 
-constexpr double kStep = 1.0 / 240.0; // seconds
+constexpr double kStep = 1.0 / 240.0;      // seconds
+constexpr double kShortStep = 1.0 / 1200.0;
 constexpr double kGravity = 9.81;
 
 // Opposite corners of two triangles that share an edge, at their distance when laid flat.
@@ -73,12 +74,14 @@ class Drape {
         }
     }
 
-    void step(const double gravity, const double kept_velocity, const bool symmetric) {
+    void step(const double seconds, const double gravity, const double kept_velocity,
+              const bool symmetric) {
+        seconds_ = seconds;
         for (std::size_t i = 0; i < x_.size(); ++i) {
             before_[i] = x_[i];
             if (inverse_mass_[i] > 0.0) {
-                velocity_[i].y() -= gravity * kStep;
-                x_[i] += velocity_[i] * kStep;
+                velocity_[i].y() -= gravity * seconds_;
+                x_[i] += velocity_[i] * seconds_;
             }
         }
         std::fill(lambda_.begin(), lambda_.end(), 0.0);
@@ -91,14 +94,14 @@ class Drape {
             symmetrise();
         }
         for (std::size_t i = 0; i < x_.size(); ++i) {
-            velocity_[i] = (x_[i] - before_[i]) * (kept_velocity / kStep);
+            velocity_[i] = (x_[i] - before_[i]) * (kept_velocity / seconds_);
         }
     }
 
   private:
     void stretch(const bool backwards) {
         const double spring = 0.5 * std::sqrt(3.0) * options_.stretch_n_m;
-        const double compliance = 1.0 / (spring * kStep * kStep);
+        const double compliance = 1.0 / (spring * seconds_ * seconds_);
         for (std::size_t n = 0; n < edges_.size(); ++n) {
             const std::size_t e = backwards ? edges_.size() - 1 - n : n;
             const auto& [a, b, rest] = edges_[e];
@@ -178,6 +181,7 @@ class Drape {
     std::vector<RestEdge> edges_, hinges_;
     std::vector<Vec3d> velocity_, before_;
     std::vector<double> inverse_mass_, lambda_;
+    double seconds_ = kStep;
 };
 
 } // namespace
@@ -204,12 +208,14 @@ void drape(const Assembly& assembly, SizedBlock& block, const DistanceField& bod
            const std::span<const std::uint8_t> held, const DrapeOptions& options) {
     Drape cloth(assembly, block, body, held, options);
     for (int i = 0; i < options.shrink_steps; ++i) {
-        cloth.step(0.0, 0.8, true);
+        cloth.step(kStep, 0.0, 0.8, true);
     }
     for (int i = 0; i < options.settle_steps; ++i) {
-        // Lively at first, then calmed.
-        const bool late = i + options.settle_steps / 3 > options.settle_steps;
-        cloth.step(kGravity, late ? 0.95 : 0.99, !late);
+        cloth.step(kStep, kGravity, 0.99, true);
+    }
+    for (int i = 0; i < options.finish_steps; ++i) {
+        const bool symmetric = i + 100 < options.finish_steps;
+        cloth.step(kShortStep, kGravity, 0.97, symmetric);
     }
 }
 

@@ -38,4 +38,14 @@ Vec3d Loft::at(const double fraction, const double height_m) const {
     return p;
 }
 
+double Loft::front_share(const double height_m) const {
+    std::array<double, 2> sums{};
+    for (int k = 0; k < 2 * kSamples; ++k) {
+        sums[k < kSamples ? 0 : 1] += (at((k + 1) / (2.0 * kSamples), height_m) -
+                                       at(k / (2.0 * kSamples), height_m))
+                                          .norm();
+    }
+    return sums[0] / (sums[0] + sums[1]);
+}
+
 } // namespace toile::garment::block

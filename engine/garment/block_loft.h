@@ -15,6 +15,9 @@ class Loft {
     /// Fraction as in Ring::at; heights are clamped to the tube's ends. Metres, world.
     [[nodiscard]] Vec3d at(double fraction, double height_m) const;
 
+    /// Share of the girth that lies in front of the side points, 0..1.
+    [[nodiscard]] double front_share(double height_m) const;
+
   private:
     static constexpr int kSamples = 32; ///< on each of the front and back arcs
     double low_ = 0.0;

@@ -207,7 +207,7 @@ void add_collar(Pattern& pattern, const std::shared_ptr<const Cut>& cut) {
         const std::vector<Vec2d> seam =
             pattern.curve(face == 0 ? "front" : "back", "neck").points; // shoulder to centre
         // A ring sector, cut a little short as rib is, so that the band lies flat on the body.
-        const double outer = face == 0 ? 0.085 : 0.120;
+        const double outer = face == 0 ? 0.100 : 0.200;
         const double h = cut->options.collar_m;
         const double angle = 0.97 * length(seam) / outer;
         const std::vector<Vec2d> low = arc(outer, outer, angle);
