@@ -26,7 +26,8 @@ struct SkirtOptions {
     double least_flare = 1.15;   ///< metres of girth per metre of length
     double below_knee_m = 0.02;  ///< hem below the knee joint
 };
-/// Panels front, back, band_front, band_back: a cone with two side seams. \throw Error
+/// An A-line skirt of six gores (front, back, and front_side, back_side on each side) with a band
+/// (band_front ...): a cone with hip curves in all seams. \throw Error
 [[nodiscard]] Pattern draft_skirt(const BodyProbe& body, const SkirtOptions& options = {});
 
 } // namespace toile::garment::block

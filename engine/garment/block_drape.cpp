@@ -8,6 +8,7 @@ namespace toile::garment::block {
 namespace {
 
 constexpr double kStep = 1.0 / 240.0;      // seconds
+constexpr double kMediumStep = 1.0 / 600.0;
 constexpr double kShortStep = 1.0 / 1200.0;
 constexpr double kGravity = 9.81;
 
@@ -215,7 +216,8 @@ void drape(const Assembly& assembly, SizedBlock& block, const DistanceField& bod
     }
     for (int i = 0; i < options.finish_steps; ++i) {
         const bool symmetric = i + 100 < options.finish_steps;
-        cloth.step(kShortStep, kGravity, 0.97, symmetric);
+        cloth.step(i < options.finish_steps / 2 ? kMediumStep : kShortStep, kGravity, 0.985,
+                   symmetric);
     }
 }
 

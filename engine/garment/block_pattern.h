@@ -28,6 +28,9 @@ struct HalfPanel {
     double right_chart_shift = 0.0; ///< added to u for the body's right side
     int priority = 0;              ///< whose placement a shared vertex takes: the highest
     std::function<Vec3d(const Vec2d&)> place; ///< first guess of the place around the body
+    /// Where a chart point (without offset) lies in the weave, when the strip is knitted round a
+    /// curve; null: where it lies in the chart.
+    std::function<Vec2d(const Vec2d&)> unroll;
 };
 
 /// Two edges sewn together on each side of the body, start to start unless reversed.

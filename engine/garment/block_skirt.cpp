@@ -45,7 +45,7 @@ struct Shape {
     static constexpr double kRow = 0.01;
 };
 
-// Where the hips are fuller than the cone, the side seams swing out, as a cutter draws them.
+// Where the hips are fuller than the cone, the seams swing out, as a cutter draws them.
 void add_hip_curve(const BodyProbe& body, const SkirtOptions& options, Shape& shape) {
     const auto rows = static_cast<std::size_t>(shape.length / Shape::kRow) + 2;
     const double snug = 2.0 * std::numbers::pi * options.band_ease_m;
@@ -66,6 +66,98 @@ void add_hip_curve(const BodyProbe& body, const SkirtOptions& options, Shape& sh
     }
 }
 
+struct Gores {
+    Shape shape;
+    double band_top = 0.0, top_girth = 0.0;
+    double front_share = 0.0, top_front_share = 0.0; // of the girth, at the seam and the top
+    std::shared_ptr<const Loft> loft, band;
+
+    // Width of one gore, half a quarter of the skirt.
+    [[nodiscard]] double width(const bool front, const double below) const {
+        return 0.25 * shape.girth_at(below) * (front ? front_share : 1.0 - front_share);
+    }
+};
+
+std::string gore_name(const bool front, const bool centre) {
+    return std::string(front ? "front" : "back") + (centre ? "" : "_side");
+}
+
+Vec2d chart_place(const bool front, const bool centre, const double y) {
+    return {(front ? 0.0 : 1.6) + (centre ? 0.0 : 0.75), y};
+}
+
+// Share of the way round from the centre front, for a share 0..1 across a gore.
+double around(const bool front, const bool centre, const double across) {
+    const double quarter = 0.5 * across + (centre ? 0.0 : 0.5);
+    return front ? 0.5 * quarter : 1.0 - 0.5 * quarter;
+}
+
+// A sector of the cone, as wide at each level as its share of the girth: so the hip curve is
+// spread over all seams. The centre gore is half a panel, its centre line straight.
+void add_gore(Pattern& pattern, const Gores& g, const bool front, const bool centre) {
+    const double apex = g.width(front, 0.0) * 4.0 / g.shape.flare *
+                        (front ? 1.0 / g.front_share : 1.0 / (1.0 - g.front_share));
+    // Angles of the gore's edges at a distance below the seam.
+    const auto right = [=](const double below) {
+        return g.width(front, below) / (apex + below) * (centre ? 1.0 : 0.5);
+    };
+    const auto left = [=](const double below) { return centre ? 0.0 : -right(below); };
+    const auto point = [=](const double below, const double angle) -> Vec2d {
+        return Vec2d(0.0, apex) + (apex + below) * Vec2d(std::sin(angle), -std::cos(angle));
+    };
+    constexpr int kPieces = 60;
+    std::vector<Vec2d> hem;
+    std::vector<Vec2d> up;
+    std::vector<Vec2d> waist;
+    std::vector<Vec2d> down;
+    for (int i = 0; i <= kPieces; ++i) {
+        const double t = static_cast<double>(i) / kPieces;
+        const double length = g.shape.length;
+        hem.push_back(point(length, left(length) + t * (right(length) - left(length))));
+        up.push_back(point((1.0 - t) * length, right((1.0 - t) * length)));
+        waist.push_back(point(0.0, right(0.0) + t * (left(0.0) - right(0.0))));
+        down.push_back(point(t * length, left(t * length)));
+    }
+    HalfPanel panel;
+    panel.name = gore_name(front, centre);
+    panel.mirrored = !front;
+    panel.chart_offset = chart_place(front, centre, 0.0);
+    panel.right_chart_shift = centre ? 0.0 : front ? -1.5 : 0.0;
+    panel.border = {{"hem", hem},
+                    {centre ? "princess" : "side", up},
+                    {"waist", waist},
+                    {centre ? "centre" : "princess", down}};
+    panel.place = [=](const Vec2d& p) {
+        const Vec2d d = p - Vec2d(0.0, apex);
+        const double below = d.norm() - apex;
+        const double angle = std::atan2(d.x(), -d.y());
+        const double across = (angle - left(below)) / (right(below) - left(below));
+        return g.loft->at(around(front, centre, across), g.shape.waist_y - below);
+    };
+    pattern.panels.push_back(std::move(panel));
+}
+
+void add_band(Pattern& pattern, const Gores& g, const bool front, const bool centre) {
+    const double h = g.band_top - g.shape.waist_y;
+    const double low = g.width(front, 0.0);
+    const double high = 0.25 * g.top_girth * (front ? g.top_front_share : 1.0 - g.top_front_share);
+    HalfPanel strip;
+    strip.name = "band_" + gore_name(front, centre);
+    strip.mirrored = !front;
+    strip.chart_offset = chart_place(front, centre, 0.1);
+    strip.right_chart_shift = centre ? 0.0 : front ? -1.5 : 0.0;
+    strip.priority = 1;
+    strip.border = {{"waist", {{0.0, 0.0}, {low, 0.0}}},
+                    {centre ? "princess" : "side", {{low, 0.0}, {high, h}}},
+                    {"top", {{high, h}, {0.0, h}}},
+                    {centre ? "centre" : "princess", {{0.0, h}, {0.0, 0.0}}}};
+    strip.place = [=](const Vec2d& p) {
+        const double across = p.x() / (low + (high - low) * p.y() / h);
+        return g.band->at(around(front, centre, across), g.shape.waist_y + p.y());
+    };
+    pattern.panels.push_back(std::move(strip));
+}
+
 } // namespace
 
 Pattern draft_skirt(const BodyProbe& body, const SkirtOptions& options) {
@@ -80,8 +172,6 @@ Pattern draft_skirt(const BodyProbe& body, const SkirtOptions& options) {
     cone.flare = options.least_flare;
     cone.length = cone.waist_y - hem;
     add_hip_curve(body, options, cone);
-    const double apex = cone.girth / cone.flare; // radius of the waist seam in the flat
-
     const auto loft = std::make_shared<const Loft>(
         body, hem - 0.02, cone.waist_y,
         [&](const double y) { return cone.girth_at(cone.waist_y - y); },
@@ -93,69 +183,26 @@ Pattern draft_skirt(const BodyProbe& body, const SkirtOptions& options) {
         },
         options.band_ease_m);
 
-    // The side seams run down from the body's widest points: front and back differ in width.
-    const double front_share = band->front_share(cone.waist_y);
-    const double top_share = band->front_share(band_top);
+    Gores gores{cone, band_top, top_girth, band->front_share(cone.waist_y),
+                band->front_share(band_top), loft, band};
     Pattern pattern;
     for (const bool front : {true, false}) {
-        const double share_of_girth = 0.5 * (front ? front_share : 1.0 - front_share);
-        const double angle = cone.flare * share_of_girth; // of the cone's sector
-        // Half width of the panel as an angle, at a distance below the seam.
-        const auto half_angle = [=](const double below) {
-            return cone.girth_at(below) * share_of_girth / (apex + below);
-        };
-        HalfPanel panel;
-        panel.name = front ? "front" : "back";
-        panel.mirrored = !front;
-        panel.chart_offset = Vec2d(front ? 0.0 : 1.2, 0.0);
-        const std::vector<Vec2d> top = arc(apex, apex, angle);
-        const std::vector<Vec2d> bottom =
-            arc(apex, apex + cone.length, half_angle(cone.length));
-        std::vector<Vec2d> side;
-        constexpr int kPieces = 60;
-        for (int i = kPieces; i >= 0; --i) {
-            const double below = cone.length * i / kPieces;
-            const double a = half_angle(below);
-            side.push_back(Vec2d(0.0, apex) + (apex + below) * Vec2d(std::sin(a), -std::cos(a)));
+        for (const bool centre : {true, false}) {
+            add_gore(pattern, gores, front, centre);
+            add_band(pattern, gores, front, centre);
         }
-        panel.border = {{"hem", bottom},
-                        {"side", side},
-                        {"waist", reversed(top)},
-                        {"centre", {top.front(), bottom.front()}}};
-        panel.place = [=](const Vec2d& p) {
-            const Vec2d d = p - Vec2d(0.0, apex);
-            const double below = d.norm() - apex;
-            const double share = std::atan2(d.x(), -d.y()) / half_angle(below);
-            return loft->at(front ? 0.5 * share : 1.0 - 0.5 * share, cone.waist_y - below);
-        };
-        pattern.panels.push_back(panel);
-
-        HalfPanel strip;
-        strip.name = front ? "band_front" : "band_back";
-        strip.mirrored = !front;
-        strip.chart_offset = Vec2d(front ? 0.0 : 1.2, 0.1);
-        strip.priority = 1;
-        const double low = cone.girth * share_of_girth;
-        const double high = top_girth * 0.5 * (front ? top_share : 1.0 - top_share);
-        const double h = options.band_m;
-        strip.border = {{"waist", {{0.0, 0.0}, {low, 0.0}}},
-                        {"side", {{low, 0.0}, {high, h}}},
-                        {"top", {{high, h}, {0.0, h}}},
-                        {"centre", {{0.0, h}, {0.0, 0.0}}}};
-        strip.place = [=](const Vec2d& p) {
-            const double share = p.x() / (low + (high - low) * p.y() / h);
-            return band->at(front ? 0.5 * share : 1.0 - 0.5 * share, cone.waist_y + p.y());
-        };
-        pattern.panels.push_back(strip);
+        const std::string face = front ? "front" : "back";
+        pattern.seams.push_back({face, "princess", face + "_side", "princess", true});
+        pattern.seams.push_back({"band_" + face, "princess", "band_" + face + "_side", "princess",
+                                 true});
+        pattern.centres.push_back({face, "centre"});
+        pattern.centres.push_back({"band_" + face, "centre"});
     }
-    pattern.seams = {{"front", "side", "back", "side", false},
-                     {"band_front", "side", "band_back", "side", false},
-                     {"front", "waist", "band_front", "waist", true},
-                     {"back", "waist", "band_back", "waist", true}};
-    pattern.centres = {{"front", "centre"},
-                       {"back", "centre"},
-                       {"band_front", "centre"},
-                       {"band_back", "centre"}};
+    for (const std::string gore : {"front", "front_side", "back", "back_side"}) {
+        pattern.seams.push_back({gore, "waist", "band_" + gore, "waist", true});
+    }
+    pattern.seams.push_back({"front_side", "side", "back_side", "side", false});
+    pattern.seams.push_back({"band_front_side", "side", "band_back_side", "side", false});
     return pattern;
 }
 

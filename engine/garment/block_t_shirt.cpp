@@ -234,6 +234,10 @@ void add_collar(Pattern& pattern, const std::shared_ptr<const Cut>& cut) {
             q += up * (0.6 * Vec3d::UnitY() + 0.7 * inward);
             return q;
         };
+        strip.unroll = [=](const Vec2d& chart) {
+            const Vec2d d = chart - Vec2d(0.0, outer);
+            return Vec2d(std::atan2(d.x(), -d.y()) * outer, outer - d.norm());
+        };
         pattern.panels.push_back(strip);
     }
 }
