@@ -1,12 +1,13 @@
 #include "garment/block_body.h"
 
 #include "core/error.h"
+#include "geometry/slice.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
+#include <tuple>
 
 namespace toile::garment::block {
 namespace {
@@ -154,56 +155,14 @@ Vec3d BodyProbe::joint(const body::Joint joint) const {
 }
 
 std::vector<std::vector<Vec3d>> BodyProbe::slice(const Vec3d& normal, const double offset) const {
-    // One crossing point per crossed edge; triangles link them into loops.
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> index;
-    std::vector<Vec3d> points;
-    std::vector<std::array<std::size_t, 2>> links;
-    std::vector<double> height;
-    height.reserve(body_.rest.positions.size());
-    for (const Vec3f& p : body_.rest.positions) {
-        height.push_back(normal.dot(p.cast<double>()) - offset);
-    }
-    const auto crossing = [&](const std::uint32_t a, const std::uint32_t b) {
-        const auto [it, inserted] = index.try_emplace(std::minmax(a, b), points.size());
-        if (inserted) {
-            const double t = height[a] / (height[a] - height[b]);
-            const Vec3d pa = body_.rest.positions[a].cast<double>();
-            const Vec3d pb = body_.rest.positions[b].cast<double>();
-            points.emplace_back(pa + t * (pb - pa));
-        }
-        return it->second;
-    };
-    for (const Triangle& t : body_.rest.triangles) {
-        std::array<std::size_t, 2> link{};
-        int found = 0;
-        for (int k = 0; k < 3; ++k) {
-            const std::uint32_t a = t[k];
-            const std::uint32_t b = t[(k + 1) % 3];
-            if ((height[a] >= 0.0) != (height[b] >= 0.0)) {
-                // Out of the upper side first, so that links run one way round.
-                link[height[a] >= 0.0 ? 0 : 1] = crossing(a, b);
-                ++found;
-            }
-        }
-        if (found == 2) {
-            links.push_back(link);
-        }
-    }
-    constexpr auto kNone = std::numeric_limits<std::size_t>::max();
-    std::vector<std::size_t> next(points.size(), kNone);
-    for (const auto& [a, b] : links) {
-        next[a] = b;
-    }
+    const geometry::Plane plane{normal.cast<float>(), static_cast<float>(offset)};
     std::vector<std::vector<Vec3d>> loops;
-    std::vector<bool> used(points.size(), false);
-    for (std::size_t start = 0; start < points.size(); ++start) {
-        std::vector<Vec3d> loop;
-        for (std::size_t i = start; i != kNone && !used[i]; i = next[i]) {
-            used[i] = true;
-            loop.push_back(points[i]);
-        }
-        if (loop.size() >= 3) {
-            loops.push_back(std::move(loop));
+    for (const auto& loop : geometry::slice(body_.rest.positions, body_.rest.triangles, plane)) {
+        if (loop.points.size() >= 3) {
+            auto& out = loops.emplace_back();
+            for (const Vec3f& p : loop.points) {
+                out.emplace_back(p.cast<double>());
+            }
         }
     }
     return loops;

@@ -28,8 +28,4 @@ class DistanceField {
     std::vector<float> values_;
 };
 
-/// Closest point of a triangle, and its barycentric coordinates in `weights`.
-[[nodiscard]] Vec3d closest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b,
-                                        const Vec3d& c, Vec3d& weights);
-
 } // namespace toile::garment::block

@@ -52,7 +52,8 @@ void add_hip_curve(const BodyProbe& body, const SkirtOptions& options, Shape& sh
     std::vector<double> raw(rows, 0.0);
     for (std::size_t i = 1; i < rows; ++i) {
         const double below = static_cast<double>(i) * Shape::kRow;
-        const double ease = snug + (options.hip_ease_m - snug) * std::min(1.0, below / 0.12);
+        const double free = std::min(1.0, below / 0.16);
+        const double ease = snug + (options.hip_ease_m - snug) * free * free;
         const double needed = body.ring(shape.waist_y - below).girth() + ease;
         raw[i] = std::max(0.0, needed - shape.girth - shape.flare * below);
     }

@@ -108,6 +108,9 @@ SizeEntry read_size(JsonObject& object, Faults& faults) {
     attempt(faults, FaultCode::json, [&] { size.mesh = read_path(object, "mesh"); });
     if (object.has("render"))
         attempt(faults, FaultCode::json, [&] { size.render = read_path(object, "render"); });
+    if (object.has("made_on"))
+        attempt(faults, FaultCode::json,
+                [&] { size.made_on = read_identifier(object, "made_on"); });
     attempt(faults, FaultCode::json, [&] {
         JsonObject chart = object.object("chart");
         for (const std::string& key : chart.keys())

@@ -52,6 +52,7 @@ struct SizeEntry {
     std::string name;                        ///< "M"
     std::string mesh;                        ///< file: `simulation` and render meshes
     std::string render;                      ///< file of further render meshes, or ""
+    std::string made_on;                     ///< avatar id, or "": Manifest::made_on
     std::map<std::string, ChartRange> chart; ///< ISO 8559-1 name -> metres
 };
 
@@ -63,7 +64,7 @@ struct Manifest {
     std::string licence; ///< SPDX or words
     std::string kind;    ///< "t-shirt", "skirt", ...
     std::uint32_t layer = 1;
-    std::string made_on; ///< avatar id, or "" when unknown
+    std::string made_on; ///< avatar id of sizes that name none, or "" when unknown
     double ease_m = 0.004;
     Fabric fabric;
     std::vector<SizeEntry> sizes;

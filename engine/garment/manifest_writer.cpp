@@ -28,6 +28,7 @@ double rounded(double value) {
 Json size_json(const SizeEntry& size) {
     Json entry = {{"name", size.name}, {"mesh", size.mesh}};
     if (!size.render.empty()) entry["render"] = size.render;
+    if (!size.made_on.empty()) entry["made_on"] = size.made_on;
     entry["chart"] = Json::object();
     for (const auto& [name, range] : size.chart) {
         if (range.minimum == range.maximum)

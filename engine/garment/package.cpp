@@ -7,6 +7,7 @@
 #include "garment/size_reader.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 namespace toile::garment {
@@ -30,17 +31,31 @@ std::string read_manifest_text(const PackageFiles& files) {
     }
 }
 
-/// The body the package was made on; nothing (with a fault) when there is no such avatar.
-std::optional<geometry::TriangleMesh> find_body(const Manifest& manifest, const std::string& shown,
-                                                const PackageLimits& limits, Faults& faults) {
-    if (manifest.made_on.empty() || !limits.body_of) return std::nullopt;
-    try {
-        return limits.body_of(manifest.made_on);
-    } catch (const Error& e) {
-        faults.push_back({FaultCode::made_on, shown + ": /made_on: " + e.what()});
+/// The bodies that the sizes were made on, each loaded once.
+class BodiesMadeOn {
+  public:
+    explicit BodiesMadeOn(const PackageLimits& limits) : limits_(limits) {}
+
+    /// Null when the size names none, or (with a fault) when there is no such avatar.
+    const geometry::TriangleMesh* of(const Manifest& manifest, const SizeEntry& size,
+                                     const std::string& shown, Faults& faults) {
+        const std::string& id = size.made_on.empty() ? manifest.made_on : size.made_on;
+        if (id.empty() || !limits_.body_of) return nullptr;
+        const auto [at, added] = bodies_.try_emplace(id);
+        if (added) {
+            try {
+                at->second = limits_.body_of(id);
+            } catch (const Error& e) {
+                faults.push_back({FaultCode::made_on, shown + ": /made_on: " + e.what()});
+            }
+        }
+        return at->second ? &*at->second : nullptr;
     }
-    return std::nullopt;
-}
+
+  private:
+    const PackageLimits& limits_;
+    std::map<std::string, std::optional<geometry::TriangleMesh>> bodies_;
+};
 
 GarmentPackage read_package(const fs::path& source, const PackageLimits& limits, Faults& faults) {
     GarmentPackage package;
@@ -49,9 +64,10 @@ GarmentPackage read_package(const fs::path& source, const PackageLimits& limits,
         const PackageFiles files(source, limits);
         const std::string shown = files.shown("garment.json");
         package.manifest = read_manifest(read_manifest_text(files), shown, faults);
-        const auto body = find_body(package.manifest, shown, limits, faults);
+        BodiesMadeOn bodies(limits);
         for (const SizeEntry& entry : package.manifest.sizes) {
             GarmentSize size;
+            const auto* const body = bodies.of(package.manifest, entry, shown, faults);
             if (entry.mesh.empty() || !read_size_meshes(files, entry, size, faults, package.notes))
                 continue;
             const std::string mesh = files.shown(entry.mesh);

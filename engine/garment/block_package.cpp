@@ -1,0 +1,240 @@
+#include "garment/block_package.h"
+
+#include "core/error.h"
+#include "garment/block_design.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toile::garment::block {
+namespace {
+
+bool starts_with(const std::string& text, const std::string& prefix) {
+    return text.compare(0, prefix.size(), prefix) == 0;
+}
+
+float linear_from_srgb(const float c) {
+    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+}
+
+// Girths where the avatar does not state them.
+double measurement(const BodyProbe& probe, const std::string& name) {
+    const auto& known = probe.body().measurements;
+    if (const auto at = known.find(name); at != known.end()) {
+        return at->second;
+    }
+    using body::Joint;
+    const double crotch = probe.joint(Joint::left_upper_leg).y();
+    const double chest = probe.joint(Joint::chest).y();
+    const double armpit = probe.armpit_height();
+    const bool waist = name == "waist_girth";
+    const double low = name == "bust_girth" ? chest : waist ? crotch + 0.12 : crotch - 0.05;
+    const double high = name == "bust_girth" ? armpit : waist ? chest : crotch + 0.12;
+    double best = waist ? 1e9 : 0.0;
+    for (double y = low; y <= high; y += 0.01) {
+        const double girth = probe.ring(y).girth();
+        best = waist ? std::min(best, girth) : std::max(best, girth);
+    }
+    return best;
+}
+
+// Ranges that meet half way between neighbouring bodies; a measurement that does not grow from
+// size to size tells nothing and is left out.
+void add_charts(const Design& design, const std::span<const BodyProbe* const> probes,
+                std::vector<GarmentSize>& sizes) {
+    for (const std::string& name : design.chart) {
+        std::vector<double> values;
+        for (const BodyProbe* probe : probes) {
+            values.push_back(measurement(*probe, name));
+        }
+        const bool grows =
+            std::adjacent_find(values.begin(), values.end(),
+                               [](double a, double b) { return b < a + 0.005; }) == values.end();
+        if (!grows && name == design.chart.front()) {
+            throw Error("the bodies of the sizes must grow in " + name +
+                        " from the first to the last");
+        }
+        if (!grows) {
+            continue;
+        }
+        constexpr double kMargin = 0.08; // beyond the outermost bodies
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const auto centimetre = [](const double x) { return std::round(x * 100.0) / 100.0; };
+            const double low = i == 0 ? values[i] - kMargin : 0.5 * (values[i - 1] + values[i]);
+            const double high = i + 1 == values.size() ? values[i] + kMargin
+                                                       : 0.5 * (values[i] + values[i + 1]);
+            sizes[i].entry.chart[name] = {centimetre(low), centimetre(high)};
+        }
+    }
+}
+
+std::vector<std::uint8_t> held_vertices(const Design& design, const Assembly& assembly,
+                                        const Pattern& pattern) {
+    std::vector<std::uint8_t> held(assembly.vertex_count(), 0);
+    for (std::size_t t = 0; t < assembly.triangles.size(); ++t) {
+        const std::string& name = pattern.panels[assembly.triangle_panel[t]].name;
+        if (!design.held_prefix.empty() && starts_with(name, design.held_prefix)) {
+            for (const std::uint32_t v : assembly.triangles[t]) {
+                held[v] = 1;
+            }
+        }
+    }
+    return held;
+}
+
+// Held panels, then ring after ring of neighbours, each more loosely.
+std::vector<float> pin_mask(const Design& design, const Assembly& assembly,
+                            const std::span<const std::uint8_t> held) {
+    std::vector<float> mask(held.size(), 0.0f);
+    std::vector<bool> reached(held.begin(), held.end());
+    for (std::size_t v = 0; v < mask.size(); ++v) {
+        mask[v] = held[v] != 0 ? design.held_strengths.front() : 0.0f;
+    }
+    for (std::size_t ring = 1; ring < design.held_strengths.size(); ++ring) {
+        std::vector<bool> next = reached;
+        for (const Triangle& t : assembly.triangles) {
+            if (reached[t[0]] || reached[t[1]] || reached[t[2]]) {
+                for (const std::uint32_t v : t) {
+                    mask[v] = next[v] || reached[v] ? mask[v] : design.held_strengths[ring];
+                    next[v] = true;
+                }
+            }
+        }
+        reached = next;
+    }
+    return mask;
+}
+
+assets::Scene make_scene(const Design& design, const Pattern& pattern, const Assembly& assembly,
+                         const SizedBlock& block) {
+    assets::Scene scene;
+    std::vector<RenderPart> parts;
+    std::vector<bool> taken(pattern.panels.size(), false);
+    for (const DesignPart& part : design.parts) {
+        RenderPart& out = parts.emplace_back();
+        out.name = part.name;
+        out.turn_in_m = part.turn_in_m;
+        for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
+            for (const std::string& prefix : part.panel_prefixes) {
+                if (!taken[p] && starts_with(pattern.panels[p].name, prefix)) {
+                    out.panels.push_back(static_cast<std::uint16_t>(p));
+                    taken[p] = true;
+                }
+            }
+        }
+        constexpr int kPixels = 256;
+        FabricTile tile = make_fabric_tile(part.weave, kPixels);
+        out.tile_m = tile.width_m;
+        scene.textures.push_back({part.name + "_shade", std::move(tile.shade), false});
+        scene.textures.push_back({part.name + "_normal", std::move(tile.normal), true});
+    }
+    for (const Colourway& colour : design.colours) {
+        scene.variants.push_back(colour.name);
+    }
+    auto primitives =
+        render_parts(assembly, pattern, block, parts, std::max(0.001, design.fabric.thickness_m));
+    assets::Mesh mesh;
+    mesh.name = design.id;
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+        for (const Colourway& colour : design.colours) {
+            assets::Material material;
+            material.name = parts[p].name + "_" + colour.name;
+            const Vec3f linear = colour.srgb.unaryExpr(&linear_from_srgb);
+            material.base_color << linear, 1.0f;
+            material.roughness = 0.85f;
+            material.sheen_color = Vec3f(0.04f, 0.04f, 0.04f) + 0.15f * linear;
+            material.sheen_roughness = 0.6f;
+            material.base_color_texture = static_cast<int>(2 * p);
+            material.normal_texture = static_cast<int>(2 * p + 1);
+            material.double_sided = true;
+            primitives[p].variant_materials.push_back(static_cast<int>(scene.materials.size()));
+            scene.materials.push_back(material);
+        }
+        primitives[p].material = primitives[p].variant_materials.front();
+        mesh.primitives.push_back(std::move(primitives[p]));
+    }
+    scene.meshes.push_back(std::move(mesh));
+    assets::Node node;
+    node.name = design.id;
+    node.mesh = 0;
+    scene.nodes.push_back(node);
+    return scene;
+}
+
+Manifest make_manifest(const Design& design) {
+    Manifest m;
+    m.id = design.id;
+    m.version = "1.0.0";
+    m.name = design.name;
+    m.maker = "Toile";
+    m.licence = "Apache-2.0";
+    m.kind = design.id;
+    m.layer = design.layer;
+    m.ease_m = design.ease_m;
+    m.fabric = design.fabric;
+    m.body_mask = design.body_mask;
+    for (const Colourway& colour : design.colours) {
+        Variant variant;
+        variant.name = colour.name;
+        variant.material_variant = colour.name;
+        m.variants.push_back(variant);
+    }
+    return m;
+}
+
+} // namespace
+
+std::vector<std::string> block_names() {
+    return design_ids();
+}
+
+GarmentPackage make_block(const std::string& name, const std::span<const SizeOrder> orders) {
+    const Design& design = find_design(name);
+    if (orders.empty()) {
+        throw UsageError("block '" + name + "': no sizes");
+    }
+    std::vector<std::unique_ptr<BodyProbe>> probes;
+    std::vector<const BodyProbe*> views;
+    std::vector<Pattern> patterns;
+    for (const SizeOrder& order : orders) {
+        probes.push_back(std::make_unique<BodyProbe>(*order.body));
+        views.push_back(probes.back().get());
+        patterns.push_back(design.draft(*probes.back()));
+    }
+    const Pattern& base = patterns[orders.size() / 2];
+    const Assembly assembly = assemble(base, design.edge_m);
+    const std::vector<std::uint8_t> held = held_vertices(design, assembly, base);
+
+    GarmentPackage package;
+    package.manifest = make_manifest(design);
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        SizedBlock block = grade(assembly, patterns[i]);
+        const DistanceField field(orders[i].body->rest, 0.008, 0.03);
+        drape(assembly, block, field, held, design.drape);
+        GarmentSize size;
+        size.entry.name = orders[i].name;
+        size.entry.made_on = orders[i].body->id;
+        size.entry.mesh = design.id + "-" + orders[i].name + ".glb";
+        for (const Vec3d& p : block.positions) {
+            size.simulation.positions.push_back(p.cast<float>());
+        }
+        size.simulation.triangles = assembly.triangles;
+        size.material_coords = block.material_coords;
+        size.render = make_scene(design, patterns[i], assembly, block);
+        package.sizes.push_back(std::move(size));
+    }
+    add_charts(design, views, package.sizes);
+    for (const GarmentSize& size : package.sizes) {
+        package.manifest.sizes.push_back(size.entry);
+    }
+    if (!design.held_prefix.empty()) {
+        package.pins = pin_mask(design, assembly, held);
+        PinGroup group;
+        group.name = "waistband";
+        group.mask = package.pins;
+        package.manifest.pins.push_back(group);
+    }
+    return package;
+}
+
+} // namespace toile::garment::block
