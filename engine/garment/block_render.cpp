@@ -13,6 +13,7 @@ struct Surface {
     std::vector<Triangle> triangles;
     std::vector<std::array<Vec2d, 3>> coords; // (nf)
     std::vector<std::uint16_t> panels;        // (nf)
+    std::vector<std::uint8_t> sides;          // (nf)
 };
 
 std::vector<Vec3d> smooth_normals(const Surface& s) {
@@ -61,6 +62,7 @@ Surface refine(const Surface& coarse) {
                                                {mc[2], mc[1], c[2]},
                                                {mc[0], mc[1], mc[2]}});
         fine.panels.insert(fine.panels.end(), 4, coarse.panels[f]);
+        fine.sides.insert(fine.sides.end(), 4, coarse.sides[f]);
     }
     fine.normals = smooth_normals(fine);
     return fine;
@@ -131,13 +133,15 @@ void turn_in(Surface& s, const double width, const double thickness,
                                          {cb, ca, cb},
                                          {cb, ca, Vec2d(ca + in)},
                                          {cb, Vec2d(ca + in), Vec2d(cb + in)}});
-        s.panels.insert(s.panels.end(), 4, s.panels[f]);
+        s.panels.insert(s.panels.end(), 4, std::uint16_t(s.panels[f]));
+        s.sides.insert(s.sides.end(), 4, std::uint8_t(s.sides[f]));
     }
 }
 
 assets::Primitive cut(const Surface& s, const std::vector<bool>& in_part, const double tile) {
     assets::Primitive out;
-    std::map<std::array<float, 5>, std::uint32_t> numbers;
+    // Cut between pieces of cloth, so that all sizes are cut alike.
+    std::map<std::array<std::uint32_t, 3>, std::uint32_t> numbers;
     for (std::size_t f = 0; f < s.triangles.size(); ++f) {
         if (!in_part[s.panels[f]]) {
             continue;
@@ -149,7 +153,7 @@ assets::Primitive cut(const Surface& s, const std::vector<bool>& in_part, const 
             const Vec2f uv(static_cast<float>(s.coords[f][k].x() / tile),
                            static_cast<float>(-s.coords[f][k].y() / tile));
             const auto [it, inserted] =
-                numbers.try_emplace({p.x(), p.y(), p.z(), uv.x(), uv.y()},
+                numbers.try_emplace({v, s.panels[f], s.sides[f]},
                                     static_cast<std::uint32_t>(out.positions.size()));
             if (inserted) {
                 out.positions.push_back(p);
@@ -173,6 +177,7 @@ std::vector<assets::Primitive> render_parts(const Assembly& assembly, const Patt
     surface.positions = block.positions;
     surface.triangles = assembly.triangles;
     surface.panels = assembly.triangle_panel;
+    surface.sides = assembly.triangle_side;
     for (std::size_t f = 0; f < assembly.triangles.size(); ++f) {
         const HalfPanel& panel = pattern.panels[assembly.triangle_panel[f]];
         std::array<Vec2d, 3> c;

@@ -39,7 +39,7 @@ struct Cut {
 Cut measure(const BodyProbe& body, const TShirtOptions& options) {
     Cut cut{body, options, 0.0, 0.0, 0.0, 0.0, {}, {}, 0.0, {}, {}, nullptr};
     cut.underarm_y = body.armpit_height() - options.armhole_drop_m;
-    cut.hem_y = body.joint(Joint::left_upper_leg).y() - 0.015;
+    cut.hem_y = body.joint(Joint::left_upper_leg).y() - 0.045;
     double chest = 0.0;
     for (double y = body.joint(Joint::chest).y(); y < body.armpit_height(); y += 0.01) {
         chest = std::max(chest, body.ring(y).girth());
