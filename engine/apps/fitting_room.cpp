@@ -96,7 +96,8 @@ FittingRoom::load_garment(const std::string& id, const std::string& size) {
         choices_.push_back(package->manifest.id + ": " + chosen->entry.name +
                            (size == "auto" ? ", the only size" : ", as asked for"));
     }
-    const std::string& made_on = package->manifest.made_on;
+    const std::string& made_on =
+        chosen->entry.made_on.empty() ? package->manifest.made_on : chosen->entry.made_on;
     auto made = made_on.empty() ? nullptr : load_body(made_on);
     return std::make_shared<const pipeline::BoundaryGarment>(std::move(package), *chosen,
                                                              std::move(made));

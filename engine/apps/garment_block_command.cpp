@@ -18,16 +18,16 @@ std::vector<garment::block::SizeOrder> read_sizes(const std::string& text) {
             throw UsageError("--sizes: '" + item + "' is not NAME=AVATAR, as in S=woman,L=man");
         }
         const std::string avatar = item.substr(equals + 1);
-        orders.push_back({item.substr(0, equals),
-                          std::make_shared<const body::BodyModel>(
-                              body::load_body_model(body::find_avatar(avatar)))});
+        orders.push_back(
+            {item.substr(0, equals), std::make_shared<const body::BodyModel>(
+                                         body::load_body_model(body::find_avatar(avatar)))});
     }
     return orders;
 }
 
 } // namespace
 
-void make_block_package(const BlockOptions& options) {
+void make_block_package(const BlockOptions& options, const garment::PackageLimits& limits) {
     const auto orders = read_sizes(options.sizes);
     const garment::GarmentPackage package = garment::block::make_block(options.block, orders);
     garment::write_package(package, options.out);
@@ -36,7 +36,7 @@ void make_block_package(const BlockOptions& options) {
                     size.entry.made_on.c_str(), size.simulation.positions.size(),
                     size.simulation.triangles.size());
     }
-    const auto faults = garment::check_package(options.out);
+    const auto faults = garment::check_package(options.out, limits);
     if (!faults.empty()) {
         throw Error(options.out.string() + ": " + faults.front().text);
     }

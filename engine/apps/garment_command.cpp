@@ -1,5 +1,6 @@
 // toile garment list | check | new | pack
 #include "apps/commands.h"
+#include "apps/garment_block_command.h"
 #include "body/body_model.h"
 #include "core/error.h"
 #include "garment/import.h"
@@ -106,9 +107,17 @@ struct NewOptions {
     fs::path out;
     std::string unit;
     garment::ImportOptions import;
+    BlockOptions block;
 };
 
 void make_new(NewOptions& options) {
+    if (!options.block.block.empty()) {
+        options.block.out = options.out;
+        make_block_package(options.block, limits());
+        return;
+    }
+    if (options.mesh.empty() || options.import.id.empty())
+        throw UsageError("garment new: --mesh and --id are required, or --block");
     if (!options.unit.empty()) {
         options.import.unit = garment::unit_from_text(options.unit);
         if (!options.import.unit)
@@ -150,10 +159,17 @@ void add_check(CLI::App& garment) {
 }
 
 void add_new(CLI::App& garment) {
-    auto* const command = garment.add_subcommand("new", "Start a garment package from a mesh");
+    auto* const command = garment.add_subcommand(
+        "new", "Start a garment package from a mesh, or make one of our basic blocks");
     const auto options = std::make_shared<NewOptions>();
-    command->add_option("--mesh", options->mesh, "A .glb, .fbx or .obj")->required();
-    command->add_option("--id", options->import.id, "Id of the new garment: t-shirt")->required();
+    auto* const mesh = command->add_option("--mesh", options->mesh, "A .glb, .fbx or .obj");
+    command->add_option("--block", options->block.block, "A basic block instead: t-shirt, skirt")
+        ->excludes(mesh);
+    command
+        ->add_option("--sizes", options->block.sizes,
+                     "Sizes of the block, smallest first, each with the avatar it is cut for")
+        ->capture_default_str();
+    command->add_option("--id", options->import.id, "Id of the new garment: t-shirt");
     command->add_option("--out", options->out, "Folder to write")->required()->type_name("DIR");
     command->add_option("--made-on", options->import.made_on,
                         "Avatar that the mesh was made on, or to lay it on");
@@ -170,7 +186,8 @@ void add_new(CLI::App& garment) {
     command->add_option("--maker", options->import.maker, "Who made it")->capture_default_str();
     command->add_option("--licence", options->import.licence, "Its licence")->capture_default_str();
     command->footer("Example: toile garment new --mesh suit.fbx --id suit --made-on man --out "
-                    "garments/suit");
+                    "garments/suit\n"
+                    "         toile garment new --block t-shirt --out garments/t-shirt");
     command->callback([options] { make_new(*options); });
 }
 

@@ -66,6 +66,21 @@ class Writer {
         return static_cast<int>(model_.bufferViews.size()) - 1;
     }
 
+    // Two bytes an index where that will do (65535 itself is not allowed).
+    int add_indices(const std::vector<Triangle>& triangles, std::size_t vertex_count) {
+        if (vertex_count > 65535)
+            return add_accessor(triangles.data(), 3 * triangles.size(), 1,
+                                TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
+                                TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, false);
+        std::vector<std::uint16_t> narrow;
+        narrow.reserve(3 * triangles.size());
+        for (const Triangle& t : triangles)
+            for (const std::uint32_t v : t)
+                narrow.push_back(static_cast<std::uint16_t>(v));
+        return add_accessor(narrow.data(), narrow.size(), 1, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                            TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, false);
+    }
+
     // `components` numbers an element; bounds are written where glTF wants them.
     int add_accessor(const void* data, std::size_t count, int components, int component_type,
                      int type, int target, bool bounds) {
@@ -214,9 +229,7 @@ class Writer {
                 from.weights.data(), from.weights.size(), 4, TINYGLTF_COMPONENT_TYPE_FLOAT,
                 TINYGLTF_TYPE_VEC4, TINYGLTF_TARGET_ARRAY_BUFFER, false);
         }
-        primitive.indices = add_accessor(from.triangles.data(), 3 * from.triangles.size(), 1,
-                                         TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
-                                         TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, false);
+        primitive.indices = add_indices(from.triangles, from.positions.size());
         for (const MorphTarget& morph : from.morphs) {
             std::map<std::string, int> target;
             target["POSITION"] = add_vectors(morph.positions, true);

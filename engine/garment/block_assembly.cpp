@@ -93,8 +93,7 @@ std::vector<std::uint32_t> along(const Assembly& assembly, const std::size_t pan
         pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(curve), std::size_t{0});
     std::vector<std::uint32_t> out;
     for (std::size_t i = 0; i <= pieces[curve]; ++i) {
-        out.push_back(
-            static_cast<std::uint32_t>((start + i) % assembly.flats[panel].border_count));
+        out.push_back(static_cast<std::uint32_t>((start + i) % assembly.flats[panel].border_count));
     }
     return out;
 }

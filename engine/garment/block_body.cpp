@@ -12,8 +12,8 @@
 namespace toile::garment::block {
 namespace {
 
-constexpr double kCell = 0.004;      // depth grid, metres
-constexpr int kNeighbourhood = 3;    // cells by which depths are widened
+constexpr double kCell = 0.004;   // depth grid, metres
+constexpr int kNeighbourhood = 3; // cells by which depths are widened
 
 double distance_to_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
     const Vec3d d = b - a;
@@ -43,17 +43,17 @@ const std::vector<Vec3d>& over_shoulder(const std::vector<std::vector<Vec3d>>& l
     const std::vector<Vec3d>* best = nullptr;
     double top = -1e9;
     for (const auto& loop : loops) {
-        const auto [low, high] =
-            std::minmax_element(loop.begin(), loop.end(),
-                                [](const Vec3d& a, const Vec3d& b) { return a.y() < b.y(); });
+        const auto [low, high] = std::minmax_element(
+            loop.begin(), loop.end(), [](const Vec3d& a, const Vec3d& b) { return a.y() < b.y(); });
         if (low->y() < shoulder_m && high->y() > top) {
             top = high->y();
             best = &loop;
         }
     }
     if (best == nullptr) {
-        throw Error("avatar '" + id + "' has no surface at its shoulder joint: its skeleton does "
-                                      "not fit its surface");
+        throw Error("avatar '" + id +
+                    "' has no surface at its shoulder joint: its skeleton does "
+                    "not fit its surface");
     }
     return *best;
 }
@@ -124,9 +124,8 @@ Vec3d Ring::at(const double fraction, const double ease_m) const {
         }
     }
     std::reverse(half.begin(), half.end());
-    const auto side = std::max_element(half.begin(), half.end(), [](const Vec2d& a, const Vec2d& b) {
-        return a.x() < b.x();
-    });
+    const auto side = std::max_element(
+        half.begin(), half.end(), [](const Vec2d& a, const Vec2d& b) { return a.x() < b.x(); });
     const std::vector<Vec2d> front(half.begin(), side + 1);
     const std::vector<Vec2d> back(side, half.end());
     const bool on_front = fraction <= 0.5;
@@ -215,8 +214,9 @@ double BodyProbe::find_armpit() const {
         }
         width = next;
     }
-    throw Error("avatar '" + body_.id + "' has no armpit between its chest and shoulders: garment "
-                                        "blocks need a body in A pose");
+    throw Error("avatar '" + body_.id +
+                "' has no armpit between its chest and shoulders: garment "
+                "blocks need a body in A pose");
 }
 
 Vec3d BodyProbe::ridge(const double x) const {

@@ -96,12 +96,4 @@ const Design& find_design(const std::string& id) {
     throw UsageError("there is no block '" + id + "'; there are " + known);
 }
 
-std::vector<std::string> design_ids() {
-    std::vector<std::string> ids;
-    for (const Design& design : designs()) {
-        ids.push_back(design.id);
-    }
-    return ids;
-}
-
 } // namespace toile::garment::block

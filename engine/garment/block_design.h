@@ -11,10 +11,10 @@ namespace toile::garment::block {
 
 /// One material of the drawn garment.
 struct DesignPart {
-    std::string name;                       ///< "body"
+    std::string name; ///< "body"
     Weave weave = Weave::invalid;
     std::vector<std::string> panel_prefixes; ///< panels whose names start so; "" takes the rest
-    double turn_in_m = 0.012;               ///< see RenderPart
+    double turn_in_m = 0.012;                ///< see RenderPart
 };
 
 struct Colourway {
@@ -24,7 +24,7 @@ struct Colourway {
 
 struct Design {
     std::string id, name;
-    double edge_m = 0.0155;              ///< of the simulation mesh
+    double edge_m = 0.0155; ///< of the simulation mesh
     Pattern (*draft)(const BodyProbe&) = nullptr;
     Fabric fabric;
     double ease_m = 0.006;
@@ -32,14 +32,13 @@ struct Design {
     DrapeOptions drape;
     std::vector<DesignPart> parts;
     std::vector<Colourway> colours;
-    std::string held_prefix;             ///< panels held to the body, "" for none
-    std::vector<float> held_strengths;   ///< of those panels, then of rings of vertices below them
-    std::vector<std::string> chart;      ///< measurements of the size chart; the first must grow
+    std::string held_prefix;           ///< panels held to the body, "" for none
+    std::vector<float> held_strengths; ///< of those panels, then of rings of vertices below them
+    std::vector<std::string> chart;    ///< measurements of the size chart; the first must grow
     std::vector<body::Part> body_mask;
 };
 
 /// \throw Error listing the designs
 [[nodiscard]] const Design& find_design(const std::string& id);
-[[nodiscard]] std::vector<std::string> design_ids();
 
 } // namespace toile::garment::block

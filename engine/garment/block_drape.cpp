@@ -7,7 +7,7 @@
 namespace toile::garment::block {
 namespace {
 
-constexpr double kStep = 1.0 / 240.0;      // seconds
+constexpr double kStep = 1.0 / 240.0; // seconds
 constexpr double kMediumStep = 1.0 / 600.0;
 constexpr double kShortStep = 1.0 / 1200.0;
 constexpr double kGravity = 9.81;
@@ -43,8 +43,7 @@ std::vector<RestEdge> hinges(const std::span<const Triangle> triangles,
                 const Wing& other = it->second;
                 // Seam edges may differ in length: compare places along as shares.
                 const double edge = 0.5 * (wing.edge + other.edge);
-                const double along =
-                    (wing.along / wing.edge - other.along / other.edge) * edge;
+                const double along = (wing.along / wing.edge - other.along / other.edge) * edge;
                 out.push_back({other.tip, wing.tip, std::hypot(along, wing.height + other.height)});
             }
         }
@@ -112,8 +111,7 @@ class Drape {
             if (w == 0.0 || size < 1e-9) {
                 continue;
             }
-            const double change =
-                -(size - rest + compliance * lambda_[e]) / (w + compliance);
+            const double change = -(size - rest + compliance * lambda_[e]) / (w + compliance);
             lambda_[e] += change;
             const Vec3d move = d * (change / size);
             x_[a] -= inverse_mass_[a] * move;

@@ -60,10 +60,10 @@ double DistanceField::at(const Vec3d& p, Vec3d& gradient) const {
     const auto mix = [](const double a, const double b, const double t) { return a + t * (b - a); };
     const double y0 = mix(mix(v[0], v[1], f.x()), mix(v[2], v[3], f.x()), f.y());
     const double y1 = mix(mix(v[4], v[5], f.x()), mix(v[6], v[7], f.x()), f.y());
-    gradient.x() = mix(mix(v[1] - v[0], v[3] - v[2], f.y()), mix(v[5] - v[4], v[7] - v[6], f.y()),
-                       f.z());
-    gradient.y() = mix(mix(v[2] - v[0], v[3] - v[1], f.x()), mix(v[6] - v[4], v[7] - v[5], f.x()),
-                       f.z());
+    gradient.x() =
+        mix(mix(v[1] - v[0], v[3] - v[2], f.y()), mix(v[5] - v[4], v[7] - v[6], f.y()), f.z());
+    gradient.y() =
+        mix(mix(v[2] - v[0], v[3] - v[1], f.x()), mix(v[6] - v[4], v[7] - v[5], f.x()), f.z());
     gradient.z() = y1 - y0;
     const double size = gradient.norm();
     if (size > 1e-12) {

@@ -16,8 +16,8 @@ Loft::Loft(const BodyProbe& body, const double low_m, const double high_m,
     for (int r = 0; r < rows; ++r) {
         const double height = std::min(low_m + r * kRow, high_m);
         const Ring ring = body.ring(height);
-        const double ease = std::max(
-            least_ease_m, (girth_m(height) - ring.girth()) / (2.0 * std::numbers::pi));
+        const double ease =
+            std::max(least_ease_m, (girth_m(height) - ring.girth()) / (2.0 * std::numbers::pi));
         auto& row = rows_.emplace_back();
         for (int k = 0; k <= 2 * kSamples; ++k) {
             row[k] = ring.at(k / (2.0 * kSamples), ease);
@@ -27,8 +27,10 @@ Loft::Loft(const BodyProbe& body, const double low_m, const double high_m,
 
 Vec3d Loft::at(const double fraction, const double height_m) const {
     const double f = std::clamp(fraction, 0.0, 1.0) * 2.0 * kSamples;
-    const double g = std::clamp((height_m - low_) / kRow, 0.0, static_cast<double>(rows_.size() - 1));
-    const auto k = std::min(static_cast<std::size_t>(f), static_cast<std::size_t>(2 * kSamples - 1));
+    const double g =
+        std::clamp((height_m - low_) / kRow, 0.0, static_cast<double>(rows_.size() - 1));
+    const auto k =
+        std::min(static_cast<std::size_t>(f), static_cast<std::size_t>(2 * kSamples - 1));
     const auto r = std::min(static_cast<std::size_t>(g), rows_.size() - 2);
     const double s = f - static_cast<double>(k);
     const double t = g - static_cast<double>(r);
@@ -41,9 +43,8 @@ Vec3d Loft::at(const double fraction, const double height_m) const {
 double Loft::front_share(const double height_m) const {
     std::array<double, 2> sums{};
     for (int k = 0; k < 2 * kSamples; ++k) {
-        sums[k < kSamples ? 0 : 1] += (at((k + 1) / (2.0 * kSamples), height_m) -
-                                       at(k / (2.0 * kSamples), height_m))
-                                          .norm();
+        sums[k < kSamples ? 0 : 1] +=
+            (at((k + 1) / (2.0 * kSamples), height_m) - at(k / (2.0 * kSamples), height_m)).norm();
     }
     return sums[0] / (sums[0] + sums[1]);
 }

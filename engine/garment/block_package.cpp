@@ -41,15 +41,15 @@ double measurement(const BodyProbe& probe, const std::string& name) {
 // Ranges that meet half way between neighbouring bodies; a measurement that does not grow from
 // size to size tells nothing and is left out.
 void add_charts(const Design& design, const std::span<const BodyProbe* const> probes,
-                std::vector<GarmentSize>& sizes) {
+                std::vector<SizeEntry>& sizes) {
     for (const std::string& name : design.chart) {
         std::vector<double> values;
         for (const BodyProbe* probe : probes) {
             values.push_back(measurement(*probe, name));
         }
-        const bool grows =
-            std::adjacent_find(values.begin(), values.end(),
-                               [](double a, double b) { return b < a + 0.005; }) == values.end();
+        const bool grows = std::adjacent_find(values.begin(), values.end(), [](double a, double b) {
+                               return b < a + 0.005;
+                           }) == values.end();
         if (!grows && name == design.chart.front()) {
             throw Error("the bodies of the sizes must grow in " + name +
                         " from the first to the last");
@@ -61,9 +61,9 @@ void add_charts(const Design& design, const std::span<const BodyProbe* const> pr
         for (std::size_t i = 0; i < values.size(); ++i) {
             const auto centimetre = [](const double x) { return std::round(x * 100.0) / 100.0; };
             const double low = i == 0 ? values[i] - kMargin : 0.5 * (values[i - 1] + values[i]);
-            const double high = i + 1 == values.size() ? values[i] + kMargin
-                                                       : 0.5 * (values[i] + values[i + 1]);
-            sizes[i].entry.chart[name] = {centimetre(low), centimetre(high)};
+            const double high =
+                i + 1 == values.size() ? values[i] + kMargin : 0.5 * (values[i] + values[i + 1]);
+            sizes[i].chart[name] = {centimetre(low), centimetre(high)};
         }
     }
 }
@@ -184,14 +184,13 @@ Manifest make_manifest(const Design& design) {
 
 } // namespace
 
-std::vector<std::string> block_names() {
-    return design_ids();
+GarmentPackage make_block(const std::string& block, const std::span<const SizeOrder> sizes) {
+    return make_block(find_design(block), sizes);
 }
 
-GarmentPackage make_block(const std::string& name, const std::span<const SizeOrder> orders) {
-    const Design& design = find_design(name);
+GarmentPackage make_block(const Design& design, const std::span<const SizeOrder> orders) {
     if (orders.empty()) {
-        throw UsageError("block '" + name + "': no sizes");
+        throw UsageError("block '" + design.id + "': no sizes");
     }
     std::vector<std::unique_ptr<BodyProbe>> probes;
     std::vector<const BodyProbe*> views;
@@ -201,20 +200,26 @@ GarmentPackage make_block(const std::string& name, const std::span<const SizeOrd
         views.push_back(probes.back().get());
         patterns.push_back(design.draft(*probes.back()));
     }
+    GarmentPackage package;
+    package.manifest = make_manifest(design);
+    for (const SizeOrder& order : orders) {
+        SizeEntry& entry = package.manifest.sizes.emplace_back();
+        entry.name = order.name;
+        entry.made_on = order.body->id;
+        entry.mesh = design.id + "-" + order.name + ".glb";
+    }
+    add_charts(design, views, package.manifest.sizes);
+
     const Pattern& base = patterns[orders.size() / 2];
     const Assembly assembly = assemble(base, design.edge_m);
     const std::vector<std::uint8_t> held = held_vertices(design, assembly, base);
 
-    GarmentPackage package;
-    package.manifest = make_manifest(design);
     for (std::size_t i = 0; i < orders.size(); ++i) {
         SizedBlock block = grade(assembly, patterns[i]);
         const DistanceField field(orders[i].body->rest, 0.008, 0.03);
         drape(assembly, block, field, held, design.drape);
         GarmentSize size;
-        size.entry.name = orders[i].name;
-        size.entry.made_on = orders[i].body->id;
-        size.entry.mesh = design.id + "-" + orders[i].name + ".glb";
+        size.entry = package.manifest.sizes[i];
         for (const Vec3d& p : block.positions) {
             size.simulation.positions.push_back(p.cast<float>());
         }
@@ -222,10 +227,6 @@ GarmentPackage make_block(const std::string& name, const std::span<const SizeOrd
         size.material_coords = block.material_coords;
         size.render = make_scene(design, patterns[i], assembly, block);
         package.sizes.push_back(std::move(size));
-    }
-    add_charts(design, views, package.sizes);
-    for (const GarmentSize& size : package.sizes) {
-        package.manifest.sizes.push_back(size.entry);
     }
     if (!design.held_prefix.empty()) {
         package.pins = pin_mask(design, assembly, held);

@@ -1,6 +1,7 @@
 // Basic blocks as garment packages: `toile garment new --block`.
 #pragma once
 
+#include "garment/block_design.h"
 #include "garment/package.h"
 
 #include <memory>
@@ -13,13 +14,12 @@ struct SizeOrder {
     std::shared_ptr<const body::BodyModel> body;
 };
 
-/// "t-shirt", "skirt".
-[[nodiscard]] std::vector<std::string> block_names();
-
 /// Drafts, sews, drapes and dresses up a block in all sizes, from the smallest to the largest;
 /// the topology is that of the middle one. The package is in memory only: see write_package.
 /// Deterministic; some seconds a size.
 /// \throw Error for an unknown block, or when a size's bodies do not grow from size to size
 [[nodiscard]] GarmentPackage make_block(const std::string& block, std::span<const SizeOrder> sizes);
+/// The same for a design of one's own.
+[[nodiscard]] GarmentPackage make_block(const Design& design, std::span<const SizeOrder> sizes);
 
 } // namespace toile::garment::block

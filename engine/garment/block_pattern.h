@@ -22,11 +22,11 @@ struct Curve {
 /// symmetric: the other half is its mirror image. y runs upwards along the warp.
 struct HalfPanel {
     std::string name;
-    std::vector<Curve> border;     ///< closed, counter-clockwise; each starts where the last ends
-    bool mirrored = false;         ///< flat x runs against the chart's u on the body's left side
-    Vec2d chart_offset{0.0, 0.0};  ///< where the left chart lies among all charts, metres
+    std::vector<Curve> border;      ///< closed, counter-clockwise; each starts where the last ends
+    bool mirrored = false;          ///< flat x runs against the chart's u on the body's left side
+    Vec2d chart_offset{0.0, 0.0};   ///< where the left chart lies among all charts, metres
     double right_chart_shift = 0.0; ///< added to u for the body's right side
-    int priority = 0;              ///< whose placement a shared vertex takes: the highest
+    int priority = 0;               ///< whose placement a shared vertex takes: the highest
     std::function<Vec3d(const Vec2d&)> place; ///< first guess of the place around the body
     /// Where a chart point (without offset) lies in the weave, when the strip is knitted round a
     /// curve; null: where it lies in the chart.

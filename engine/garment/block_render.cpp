@@ -19,8 +19,8 @@ struct Surface {
 std::vector<Vec3d> smooth_normals(const Surface& s) {
     std::vector<Vec3d> normals(s.positions.size(), Vec3d::Zero());
     for (const Triangle& t : s.triangles) {
-        const Vec3d n = (s.positions[t[1]] - s.positions[t[0]])
-                            .cross(s.positions[t[2]] - s.positions[t[0]]);
+        const Vec3d n =
+            (s.positions[t[1]] - s.positions[t[0]]).cross(s.positions[t[2]] - s.positions[t[0]]);
         for (const std::uint32_t v : t) {
             normals[v] += n;
         }
@@ -53,10 +53,9 @@ Surface refine(const Surface& coarse) {
         const Triangle m = {middle(t[0], t[1]), middle(t[1], t[2]), middle(t[2], t[0])};
         const std::array<Vec2d, 3> mc = {0.5 * (c[0] + c[1]), 0.5 * (c[1] + c[2]),
                                          0.5 * (c[2] + c[0])};
-        fine.triangles.insert(fine.triangles.end(), {{t[0], m[0], m[2]},
-                                                     {m[0], t[1], m[1]},
-                                                     {m[2], m[1], t[2]},
-                                                     {m[0], m[1], m[2]}});
+        fine.triangles.insert(
+            fine.triangles.end(),
+            {{t[0], m[0], m[2]}, {m[0], t[1], m[1]}, {m[2], m[1], t[2]}, {m[0], m[1], m[2]}});
         fine.coords.insert(fine.coords.end(), {{c[0], mc[0], mc[2]},
                                                {mc[0], c[1], mc[1]},
                                                {mc[2], mc[1], c[2]},
@@ -74,8 +73,8 @@ std::vector<std::pair<std::size_t, int>> free_edges(const Surface& s) {
         edges;
     for (std::size_t f = 0; f < s.triangles.size(); ++f) {
         for (int k = 0; k < 3; ++k) {
-            auto& [count, where] = edges[std::minmax(s.triangles[f][k],
-                                                     s.triangles[f][(k + 1) % 3])];
+            auto& [count, where] =
+                edges[std::minmax(s.triangles[f][k], s.triangles[f][(k + 1) % 3])];
             ++count;
             where = {f, k};
         }
@@ -125,10 +124,9 @@ void turn_in(Surface& s, const double width, const double thickness,
         const Vec2d in = across.normalized() * width;
         const auto& ra = rows[a];
         const auto& rb = rows[b];
-        s.triangles.insert(s.triangles.end(), {{b, a, ra[0]},
-                                               {b, ra[0], rb[0]},
-                                               {rb[0], ra[0], ra[1]},
-                                               {rb[0], ra[1], rb[1]}});
+        s.triangles.insert(
+            s.triangles.end(),
+            {{b, a, ra[0]}, {b, ra[0], rb[0]}, {rb[0], ra[0], ra[1]}, {rb[0], ra[1], rb[1]}});
         s.coords.insert(s.coords.end(), {{cb, ca, ca},
                                          {cb, ca, cb},
                                          {cb, ca, Vec2d(ca + in)},
@@ -152,9 +150,8 @@ assets::Primitive cut(const Surface& s, const std::vector<bool>& in_part, const 
             const Vec3f p = s.positions[v].cast<float>();
             const Vec2f uv(static_cast<float>(s.coords[f][k].x() / tile),
                            static_cast<float>(-s.coords[f][k].y() / tile));
-            const auto [it, inserted] =
-                numbers.try_emplace({v, s.panels[f], s.sides[f]},
-                                    static_cast<std::uint32_t>(out.positions.size()));
+            const auto [it, inserted] = numbers.try_emplace(
+                {v, s.panels[f], s.sides[f]}, static_cast<std::uint32_t>(out.positions.size()));
             if (inserted) {
                 out.positions.push_back(p);
                 out.normals.push_back(s.normals[v].cast<float>());

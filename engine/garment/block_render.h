@@ -18,10 +18,8 @@ struct RenderPart {
 /// curved surface that the vertex normals suggest (Vlachos et al. 2001, "Curved PN triangles",
 /// edges only), texture coordinates = material coordinates / tile. At a free edge the cloth turns
 /// in by its thickness and lies inside for `turn_in_m`.
-[[nodiscard]] std::vector<assets::Primitive> render_parts(const Assembly& assembly,
-                                                          const Pattern& pattern,
-                                                          const SizedBlock& block,
-                                                          std::span<const RenderPart> parts,
-                                                          double thickness_m);
+[[nodiscard]] std::vector<assets::Primitive>
+render_parts(const Assembly& assembly, const Pattern& pattern, const SizedBlock& block,
+             std::span<const RenderPart> parts, double thickness_m);
 
 } // namespace toile::garment::block

@@ -175,8 +175,7 @@ Pattern draft_skirt(const BodyProbe& body, const SkirtOptions& options) {
     add_hip_curve(body, options, cone);
     const auto loft = std::make_shared<const Loft>(
         body, hem - 0.02, cone.waist_y,
-        [&](const double y) { return cone.girth_at(cone.waist_y - y); },
-        options.band_ease_m);
+        [&](const double y) { return cone.girth_at(cone.waist_y - y); }, options.band_ease_m);
     const auto band = std::make_shared<const Loft>(
         body, cone.waist_y, band_top,
         [&](const double y) {
@@ -184,8 +183,9 @@ Pattern draft_skirt(const BodyProbe& body, const SkirtOptions& options) {
         },
         options.band_ease_m);
 
-    Gores gores{cone, band_top, top_girth, band->front_share(cone.waist_y),
-                band->front_share(band_top), loft, band};
+    Gores gores{
+        cone, band_top, top_girth, band->front_share(cone.waist_y), band->front_share(band_top),
+        loft, band};
     Pattern pattern;
     for (const bool front : {true, false}) {
         for (const bool centre : {true, false}) {
@@ -194,8 +194,8 @@ Pattern draft_skirt(const BodyProbe& body, const SkirtOptions& options) {
         }
         const std::string face = front ? "front" : "back";
         pattern.seams.push_back({face, "princess", face + "_side", "princess", true});
-        pattern.seams.push_back({"band_" + face, "princess", "band_" + face + "_side", "princess",
-                                 true});
+        pattern.seams.push_back(
+            {"band_" + face, "princess", "band_" + face + "_side", "princess", true});
         pattern.centres.push_back({face, "centre"});
         pattern.centres.push_back({"band_" + face, "centre"});
     }

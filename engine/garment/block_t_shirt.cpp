@@ -20,12 +20,12 @@ double smooth_step(const double low, const double high, const double x) {
 struct Cut {
     const BodyProbe& body;
     TShirtOptions options;
-    double underarm_y = 0.0, hem_y = 0.0;      // world heights
-    double width = 0.0, hem_width = 0.0;       // of a quarter
-    Vec3d neck_point, shoulder_point;          // world: ends of the shoulder seam
-    double shoulder = 0.0;                     // its length
-    std::array<double, 2> rise{};              // underarm level to the neck point: front, back
-    std::array<double, 2> neck_depth{};        // below the neck point at the centre
+    double underarm_y = 0.0, hem_y = 0.0; // world heights
+    double width = 0.0, hem_width = 0.0;  // of a quarter
+    Vec3d neck_point, shoulder_point;     // world: ends of the shoulder seam
+    double shoulder = 0.0;                // its length
+    std::array<double, 2> rise{};         // underarm level to the neck point: front, back
+    std::array<double, 2> neck_depth{};   // below the neck point at the centre
     std::shared_ptr<const Loft> loft;
 
     [[nodiscard]] double shoulder_drop() const { return neck_point.y() - shoulder_point.y(); }
@@ -73,10 +73,9 @@ Cut measure(const BodyProbe& body, const TShirtOptions& options) {
 // First guess of a torso point: around the trunk below the underarm, over chest and shoulder
 // above it.
 Vec3d place_torso(const Cut& cut, const int face, const Vec2d& flat) {
-    const double side = flat.y() < 0.0
-                            ? cut.width + (cut.hem_width - cut.width) * flat.y() /
-                                              (cut.hem_y - cut.underarm_y)
-                            : cut.width;
+    const double side = flat.y() < 0.0 ? cut.width + (cut.hem_width - cut.width) * flat.y() /
+                                                         (cut.hem_y - cut.underarm_y)
+                                       : cut.width;
     const double share = std::min(1.0, flat.x() / side);
     const double fraction = face == 0 ? 0.5 * share : 1.0 - 0.5 * share;
     const Vec3d below = cut.loft->at(fraction, cut.underarm_y + std::min(0.0, flat.y()));
@@ -121,10 +120,11 @@ HalfPanel torso_panel(const std::shared_ptr<const Cut>& cut, const int face) {
     const Vec2d down(seam.y(), -seam.x());
     const double depth = cut->neck_depth[face];
     const auto neckline =
-        face == 0 ? bezier(neck, neck + 0.62 * depth * Vec2d(-std::abs(down.x()), -std::abs(down.y())),
-                           centre + Vec2d(0.60 * neck.x(), 0.0), centre)
-                  : bezier(neck, neck + 0.55 * depth * Vec2d(-std::abs(down.x()), -std::abs(down.y())),
-                           centre + Vec2d(0.62 * neck.x(), 0.0), centre);
+        face == 0
+            ? bezier(neck, neck + 0.62 * depth * Vec2d(-std::abs(down.x()), -std::abs(down.y())),
+                     centre + Vec2d(0.60 * neck.x(), 0.0), centre)
+            : bezier(neck, neck + 0.55 * depth * Vec2d(-std::abs(down.x()), -std::abs(down.y())),
+                     centre + Vec2d(0.62 * neck.x(), 0.0), centre);
     HalfPanel panel;
     panel.name = face == 0 ? "front" : "back";
     panel.mirrored = face == 1;
@@ -146,7 +146,8 @@ std::vector<Vec2d> sleeve_cap(const double half_width, const double height) {
 }
 
 // The value in [low, high] at which a rising function reaches `wanted`.
-template <class F> double solve(double low, double high, const double wanted, const F& f) {
+template <class F>
+double solve(double low, double high, const double wanted, const F& f) {
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
         (f(middle) < wanted ? low : high) = middle;
@@ -190,9 +191,9 @@ void add_sleeve(Pattern& pattern, const std::shared_ptr<const Cut>& cut) {
         const Vec3d across = (out - axis * axis.dot(out) - up * up.dot(out)).normalized();
         const double mean_width = 0.5 * (widths[0] + widths[1]);
         panel.place = [=](const Vec2d& p) {
-            const double here = -p.y() < height
-                                    ? width
-                                    : width + (cuff - width) * (-p.y() - height) / (sleeve - height);
+            const double here =
+                -p.y() < height ? width
+                                : width + (cuff - width) * (-p.y() - height) / (sleeve - height);
             const double angle = std::min(1.0, p.x() / here) * std::numbers::pi;
             const double radius = std::max(least, mean_width / std::numbers::pi * here / width);
             return Vec3d(on_axis + axis * (first - p.y()) +

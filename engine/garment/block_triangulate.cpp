@@ -37,8 +37,7 @@ double distance_to_polygon(const std::span<const Vec2d> polygon, const Vec2d& p)
     double best = 1e30;
     for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
         const Vec2d along = polygon[i] - polygon[j];
-        const double t =
-            std::clamp((p - polygon[j]).dot(along) / along.squaredNorm(), 0.0, 1.0);
+        const double t = std::clamp((p - polygon[j]).dot(along) / along.squaredNorm(), 0.0, 1.0);
         best = std::min(best, (polygon[j] + t * along - p).norm());
     }
     return best;
@@ -79,7 +78,8 @@ std::vector<Triangle> delaunay(const std::vector<Vec2d>& input) {
             }
         }
     }
-    std::erase_if(triangles, [n](const Triangle& t) { return t[0] >= n || t[1] >= n || t[2] >= n; });
+    std::erase_if(triangles,
+                  [n](const Triangle& t) { return t[0] >= n || t[1] >= n || t[2] >= n; });
     return triangles;
 }
 

@@ -73,7 +73,7 @@ GarmentPackage read_package(const fs::path& source, const PackageLimits& limits,
             const std::string mesh = files.shown(entry.mesh);
             const std::size_t before = faults.size();
             check_simulation(size, mesh, limits, faults);
-            check_unit(size, mesh, body ? &*body : nullptr, faults);
+            check_unit(size, mesh, body, faults);
             if (faults.size() == before) check_render(size, mesh, limits, faults);
             package.sizes.push_back(std::move(size));
         }
