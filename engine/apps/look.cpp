@@ -160,7 +160,7 @@ void StageBox::follow(const pipeline::DressedPerson& person, double dt_s) {
     const auto& hips = person.posed().joints[0].position;
     const Vec3f goal(hips[0], 0.0f, hips[2]);
     centre_ += static_cast<float>(1.0 - std::exp(-dt_s / kFollowTime_s)) * (goal - centre_);
-    const Vec3f half(0.52f * stature_, 0.0f, 0.35f * stature_);
+    const Vec3f half(0.43f * stature_, 0.0f, 0.35f * stature_);
     box_.low = centre_ - half;
     box_.high = centre_ + half + Vec3f(0.0f, 1.1f * stature_, 0.0f);
 }
