@@ -18,6 +18,7 @@ DressedPerson::DressedPerson(host::Registry& registry, host::Services& services,
     skinner_.pose(*before_);
     skinner_.pose(*after_);
     if (!garments_.empty()) make_cloth_world(registry, services, job);
+    order_layers();
 }
 
 DressedPerson::~DressedPerson() = default;
@@ -119,6 +120,26 @@ void DressedPerson::start(const BodyFrame& first, StageClock& clock) noexcept {
         before_->set_frame(first);
         advance(first.joints, kStep, clock);
     }
+    show();
+}
+
+void DressedPerson::order_layers() {
+    for (std::size_t outer = 1; outer < garments_.size(); ++outer)
+        for (std::size_t inner = 0; inner < outer; ++inner)
+            overlaps_.push_back(
+                {inner, outer,
+                 garment::LayerOffset(garments_[inner].bound, garments_[inner].triangles(),
+                                      garments_[outer].bound)});
+}
+
+void DressedPerson::show() noexcept {
+    constexpr float kGap_m = 0.005f;
+    for (WornGarment& garment : garments_)
+        garment.begin_showing();
+    for (const Overlap& overlap : overlaps_) {
+        const WornGarment& inner = garments_[overlap.inner];
+        overlap.offset.apply(inner.shown, inner.normals, kGap_m, garments_[overlap.outer].shown);
+    }
     for (WornGarment& garment : garments_)
         garment.update_surfaces();
 }
@@ -140,8 +161,7 @@ void DressedPerson::step(const BodyFrame& frame, double dt_s, StageClock& clock)
     before_->set_frame(frame); // becomes `after_`
     advance(frame.joints, step_s, clock);
     clock.begin(Stage::surfaces);
-    for (WornGarment& garment : garments_)
-        garment.update_surfaces();
+    show();
     clock.end(Stage::surfaces);
 }
 

@@ -1,6 +1,7 @@
 // One person: a body, its garments, and the plugins that move them frame by frame.
 #pragma once
 
+#include "garment/layering.h"
 #include "host/registry.h"
 #include "pipeline/posed_body.h"
 #include "pipeline/stage_clock.h"
@@ -49,6 +50,8 @@ class DressedPerson {
     void make_cloth_world(host::Registry& registry, host::Services& services, host::Job& job);
     void advance(const JointArray& joints, double dt_s, StageClock& clock) noexcept;
     void step_cloth(double dt_s) noexcept;
+    void order_layers();
+    void show() noexcept;
 
     std::shared_ptr<const BoundaryBody> body_;
     DressingOptions options_;
@@ -61,6 +64,13 @@ class DressedPerson {
     std::vector<toile_garment_target> targets_;
     std::vector<toile_garment_state> states_;
     std::unique_ptr<FrameGuard> cloth_guard_;
+    /// An outer garment over an inner one; indices into garments_.
+    struct Overlap {
+        std::size_t inner;
+        std::size_t outer;
+        garment::LayerOffset offset;
+    };
+    std::vector<Overlap> overlaps_;
     bool reset_ = true;
 };
 

@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 
+#include <algorithm>
+
 namespace toile::pipeline {
 
 WornGarment::WornGarment(std::shared_ptr<const host::Plugin> plugin, host::Services& services,
@@ -41,8 +43,9 @@ void WornGarment::bind(const BoundaryBody& body, host::Job& job) {
                     garment_->package().manifest.id);
     fallback_ = std::make_unique<body::SkinnedSurface>(bound, std::span<const Vec3f>(),
                                                        weights_.joints, weights_.weights);
-    targets = positions = bound;
+    targets = positions = shown = bound;
     normals.assign(count, Vec3f::UnitY());
+    shown_normals_ = normals;
     geometry::vertex_normals(positions, triangles(), normals);
 }
 
@@ -70,9 +73,14 @@ void WornGarment::update_targets(const toile_body_state& state,
                     body::VectorRows(std::span(targets)), {});
 }
 
+void WornGarment::begin_showing() noexcept {
+    std::copy(positions.begin(), positions.end(), shown.begin());
+}
+
 void WornGarment::update_surfaces() noexcept {
+    geometry::vertex_normals(shown, triangles(), shown_normals_);
     for (std::size_t i = 0; i < surfaces.size(); ++i)
-        embedding_.evaluate(i, positions, normals, scratch_, surfaces[i].positions,
+        embedding_.evaluate(i, shown, shown_normals_, scratch_, surfaces[i].positions,
                             surfaces[i].normals);
 }
 

@@ -30,7 +30,9 @@ class WornGarment {
     void update_targets(const toile_body_state& state,
                         const body::JointTransforms& skinning) noexcept;
 
-    /// Render meshes for the cloth as it is now. [frame]
+    /// Starts `shown` from the cloth as it is now; layers may then push it. [frame]
+    void begin_showing() noexcept;
+    /// Render meshes for `shown`. [frame]
     void update_surfaces() noexcept;
 
     [[nodiscard]] const BoundaryGarment& garment() const noexcept { return *garment_; }
@@ -44,6 +46,7 @@ class WornGarment {
     std::vector<Vec3f> targets;   ///< (nv) where plain skinning would have it
     std::vector<Vec3f> positions; ///< (nv) the cloth
     std::vector<Vec3f> normals;   ///< (nv)
+    std::vector<Vec3f> shown;     ///< (nv) the cloth as drawn, clear of the layers below
 
     /// One drawable of the package, positions as worn; material as in its scene.
     struct Surface {
@@ -59,6 +62,7 @@ class WornGarment {
     std::shared_ptr<const BoundaryGarment> garment_;
     host::Instance instance_;
     const toile_garment& table_;
+    std::vector<Vec3f> shown_normals_;
     FrameGuard guard_;
     body::SkinWeights weights_;
     std::vector<float> attachment_;

@@ -1,0 +1,66 @@
+#include "garment/layering.h"
+
+#include "support/meshes.h"
+
+#include <gtest/gtest.h>
+
+namespace toile::garment {
+namespace {
+
+constexpr float kGap = 0.004f;
+
+// A skirt of radius 0.2 and a shirt of another radius over its upper half.
+struct Layers {
+    geometry::TriangleMesh inner = test::tube(0.2f, 0.2f, 0.5f, 48, 20);
+    geometry::TriangleMesh outer;
+    explicit Layers(float radius) : outer(test::tube(radius, radius, 0.5f, 48, 20)) {
+        inner.normals.resize(inner.positions.size());
+        geometry::vertex_normals(inner.positions, inner.triangles, inner.normals);
+        for (Vec3f& p : outer.positions)
+            p.y() += 0.25f;
+    }
+};
+
+float radius(const Vec3f& p) {
+    return Vec2f(p.x(), p.z()).norm();
+}
+
+TEST(Layering, AShirtBoundInsideTheSkirtComesOutOfIt) {
+    Layers layers(0.18f);
+    const LayerOffset offset(layers.inner.positions, layers.inner.triangles,
+                             layers.outer.positions);
+    ASSERT_GT(offset.pair_count(), 0u);
+    offset.apply(layers.inner.positions, layers.inner.normals, kGap, layers.outer.positions);
+    for (const Vec3f& p : layers.outer.positions) {
+        if (p.y() < 0.49f) {
+            EXPECT_GE(radius(p), 0.2f + kGap - 1e-3f) << p.transpose();
+        } else if (p.y() > 0.52f) {
+            EXPECT_NEAR(radius(p), 0.18f, 1e-3f) << "beyond the skirt's border it is free";
+        }
+    }
+}
+
+TEST(Layering, WhatIsOutsideAlreadyStaysBitForBit) {
+    Layers layers(0.23f);
+    const auto before = layers.outer.positions;
+    const LayerOffset offset(layers.inner.positions, layers.inner.triangles,
+                             layers.outer.positions);
+    offset.apply(layers.inner.positions, layers.inner.normals, kGap, layers.outer.positions);
+    EXPECT_TRUE(before == layers.outer.positions);
+}
+
+TEST(Layering, ThePushFollowsTheInnerGarment) {
+    Layers layers(0.21f);
+    const LayerOffset offset(layers.inner.positions, layers.inner.triangles,
+                             layers.outer.positions);
+    for (Vec3f& p : layers.inner.positions) {
+        p.x() *= 1.2f;
+        p.z() *= 1.2f;
+    }
+    offset.apply(layers.inner.positions, layers.inner.normals, kGap, layers.outer.positions);
+    for (const Vec3f& p : layers.outer.positions)
+        if (p.y() < 0.49f) EXPECT_GE(radius(p), 0.24f + kGap - 2e-3f);
+}
+
+} // namespace
+} // namespace toile::garment
