@@ -57,6 +57,11 @@ JointMask covered_parts(const std::array<std::uint16_t, 4>& joints,
 constexpr float kNearSkin = 0.025f; ///< m, where the place on the body is kept up to date
 constexpr float kTouching = 0.012f; ///< m, where a plane may push before the next refresh
 
+/// No plane yet, or beside the end of what the sample covers.
+bool is_nowhere(const Vec4& normal) {
+    return normal.w() < -1e5f;
+}
+
 /// Could a sample at p, moving at v, come within `distance` of the plane in `time` seconds?
 bool is_near(const Vec4& normal, const Vec4& velocity, const Vec4& p, const Vec4& v, float distance,
              float time) {
@@ -246,7 +251,7 @@ void Contacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4&
     const bool turn = !when.last && vertex % when.phases == when.phase;
     Plane& plane = own_plane_[vertex];
     plane.normal.w() += plane.velocity.w() * when.since_last;
-    const bool near = other_triangle_[vertex] != kNone ||
+    const bool near = other_triangle_[vertex] != kNone || is_nowhere(plane.normal) ||
                       is_near(plane.normal, plane.velocity, p, v, kNearSkin, when.period);
     if (!turn && !near) {
         return;
@@ -269,7 +274,7 @@ void Contacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4&
     plane.normal.w() += plane.velocity.w() * when.since_last;
     other_plane_[sample].normal.w() += other_plane_[sample].velocity.w() * when.since_last;
     const bool turn = !when.last && triangle % when.phases == when.phase;
-    const bool near = when.last && (other_triangle_[sample] != kNone ||
+    const bool near = when.last && (other_triangle_[sample] != kNone || is_nowhere(plane.normal) ||
                                     is_near(plane.normal, plane.velocity, p, v, kNearSkin, 0.0f));
     if (!turn && !near) {
         return;

@@ -91,9 +91,12 @@ void MovingBody::link_triangles() {
         star_first_[v + 1] += star_first_[v];
     }
     star_.resize(3 * triangles_.size());
+    ring_.resize(3 * triangles_.size());
     std::vector<std::uint32_t> next(star_first_.begin(), star_first_.end() - 1);
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        for (const std::uint32_t v : triangles_[t]) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = triangles_[t][k];
+            ring_[next[v]] = triangles_[t][(k + 1) % 3];
             star_[next[v]++] = static_cast<std::uint32_t>(t);
         }
     }

@@ -86,6 +86,7 @@ class MovingBody {
     std::vector<std::uint32_t> across_;        ///< (3 nf)
     std::vector<std::uint32_t> star_first_;    ///< (nv + 1)
     std::vector<std::uint32_t> star_;          ///< triangles at each vertex
+    std::vector<std::uint32_t> ring_;          ///< the corner after it in each of these
     std::vector<std::uint8_t> triangle_joint_; ///< (nf) joint that moves it most
     std::array<Part, kBodyJoints> parts_;
     std::vector<Vec4> before_, after_, now_;

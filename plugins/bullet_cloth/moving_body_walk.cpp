@@ -93,6 +93,14 @@ SurfacePoint MovingBody::walk(const Vec4& p, std::uint32_t start,
             }
         } else {
             const std::uint32_t v = triangles_[from][static_cast<std::size_t>(feature - kCorner0)];
+            // Convex there: no edge leads closer, so no triangle does.
+            bool closer = false;
+            for (std::uint32_t s = star_first_[v]; s < star_first_[v + 1]; ++s) {
+                closer = closer || (now_[ring_[s]] - at).dot(towards) > 0.0f;
+            }
+            if (!closer) {
+                break;
+            }
             for (std::uint32_t s = star_first_[v]; s < star_first_[v + 1]; ++s) {
                 if (star_[s] != from && open(star_[s]) && leads(star_[s], at, towards)) {
                     closest_on(p, star_[s], best, feature);
