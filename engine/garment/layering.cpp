@@ -7,9 +7,10 @@
 namespace toile::garment {
 namespace {
 
-constexpr float kReach_m = 0.12f;        // farther garments are not one above the other
-constexpr float kBesideBorder_m = 0.01f; // nearest point on a border, but not below the vertex
-constexpr float kSlide_m = 0.05f;        // pairs that slid this far apart no longer tell anything
+constexpr float kReach_m = 0.12f;       // farther garments are not one above the other
+constexpr float kBorderFull_m = 0.015f; // beside the inner garment's border the push fades out
+constexpr float kBorderNone_m = 0.06f;
+constexpr float kSlide_m = 0.05f; // pairs that slid this far apart no longer tell anything
 constexpr float kMostPush_m = 0.10f;
 
 } // namespace
@@ -22,8 +23,11 @@ LayerOffset::LayerOffset(std::span<const Vec3f> inner, std::span<const Triangle>
         if (found.triangle == geometry::kNoTriangle) continue;
         const Vec3f away = outer[i] - found.point;
         const Vec3f beside = away - away.dot(found.normal) * found.normal;
-        if (beside.norm() > kBesideBorder_m) continue;
-        pairs_.push_back({i, inner_triangles[found.triangle], found.barycentric});
+        const float weight = std::clamp(
+            (kBorderNone_m - beside.norm()) / (kBorderNone_m - kBorderFull_m), 0.0f, 1.0f);
+        if (weight == 0.0f) continue;
+        pairs_.push_back(
+            {i, inner_triangles[found.triangle], found.barycentric, beside.norm(), weight});
     }
 }
 
@@ -44,7 +48,8 @@ void LayerOffset::apply(std::span<const Vec3f> inner, std::span<const Vec3f> inn
         const Vec3f away = vertex - point;
         const float height = away.dot(normal);
         const float slid = (away - height * normal).norm();
-        const float trust = std::clamp(2.0f - slid / kSlide_m, 0.0f, 1.0f);
+        const float trust =
+            pair.weight * std::clamp(2.0f - (slid - pair.beside_m) / kSlide_m, 0.0f, 1.0f);
         vertex += trust * std::clamp(gap_m - height, 0.0f, kMostPush_m) * normal;
     }
 }

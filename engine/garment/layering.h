@@ -13,8 +13,9 @@ namespace toile::garment {
 /// One pair of garments. Built when they are bound, applied every frame.
 class LayerOffset {
   public:
-    /// Pairs each outer vertex with the inner garment's nearest point, both as bound. Vertices
-    /// beyond the inner garment's borders, or farther than 12 cm, stay free.
+    /// Pairs each outer vertex with the inner garment's nearest point, both as bound. Beside
+    /// the inner garment's borders the push fades out over 6 cm; vertices farther than 12 cm stay
+    /// free.
     /// inner (ni), outer (no) metres. \throw Error when an index is out of range
     LayerOffset(std::span<const Vec3f> inner, std::span<const Triangle> inner_triangles,
                 std::span<const Vec3f> outer);
@@ -31,6 +32,8 @@ class LayerOffset {
         std::uint32_t outer;
         Triangle corners; ///< of the inner garment
         Vec3f barycentric;
+        float beside_m; ///< from the inner border when bound, 0 above the garment
+        float weight;   ///< 1 above the garment, less beside its border
     };
     std::vector<Pair> pairs_;
 };
