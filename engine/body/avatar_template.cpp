@@ -82,7 +82,8 @@ std::vector<SurfacePoint> bind(const geometry::TriangleMesh& mesh, std::size_t h
 
 AvatarTemplate make_avatar_template(const MakeHumanData& data) {
     ShapeRecipe recipe = adult_recipe(0.5);
-    for (const char* target : kSpreadFingers) recipe[target] = kFingerSpread;
+    for (const char* target : kSpreadFingers)
+        recipe[target] = kFingerSpread;
     const BaseShape shape = make_base_shape(data, recipe);
     AvatarTemplate out;
     out.skeleton = shape.skeleton;
