@@ -54,7 +54,12 @@ double in_circle(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& p)
 
 // Bowyer and Watson's insertion; quadratic, for at most a few thousand points.
 std::vector<Triangle> delaunay(const std::vector<Vec2d>& input) {
+    // A hair's breadth of noise decides between equally good triangles of points on one circle.
     std::vector<Vec2d> points = input;
+    Random random(11);
+    for (Vec2d& p : points) {
+        p += Vec2d(random.uniform(-1e-7, 1e-7), random.uniform(-1e-7, 1e-7));
+    }
     const auto n = static_cast<std::uint32_t>(points.size());
     points.emplace_back(-50.0, -40.0);
     points.emplace_back(50.0, -40.0);
@@ -76,6 +81,9 @@ std::vector<Triangle> delaunay(const std::vector<Vec2d>& input) {
             if (std::find(edges.begin(), edges.end(), std::pair{b, a}) == edges.end()) {
                 triangles.push_back({a, b, i});
             }
+        }
+        if (triangles.size() > 2 * static_cast<std::size_t>(i) + 3) {
+            throw Error("the outline touches or crosses itself");
         }
     }
     std::erase_if(triangles,

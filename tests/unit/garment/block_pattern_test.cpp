@@ -9,7 +9,8 @@ namespace {
 std::vector<Vec2d> disc(const std::size_t count, const double radius) {
     std::vector<Vec2d> out;
     for (std::size_t i = 0; i < count; ++i) {
-        const double a = 2.0 * std::numbers::pi * static_cast<double>(i) / count;
+        const double a =
+            2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
         out.emplace_back(radius * std::cos(a), radius * std::sin(a));
     }
     return out;
