@@ -75,7 +75,11 @@ float base_layer_depth(const Skeleton& skeleton, const Vec3f& p) {
     const float leg = kThighShare * thigh.norm() - (q - hip).dot(thigh.normalized());
     // Armholes: a capsule from the shoulder down the arm.
     const Vec3f shoulder = skeleton.rest(Joint::left_upper_arm) + Vec3f(0.012f, 0.0f, 0.0f);
-    const float arm = distance_to_segment(q, shoulder, skeleton.rest(Joint::left_hand)) - 0.088f;
+    const Vec3f hand = skeleton.rest(Joint::left_hand);
+    const Vec3f beyond = hand + 0.5f * (hand - skeleton.rest(Joint::left_lower_arm)).normalized();
+    const float arm =
+        std::min(distance_to_segment(q, shoulder, hand), distance_to_segment(q, hand, beyond)) -
+        0.088f;
     // Neckline: an elliptic scoop, deeper in front; nothing above the shoulders.
     const Vec3f neck = skeleton.rest(Joint::neck);
     const bool front = q.z() > neck.z();
