@@ -23,6 +23,7 @@ add_compile_options(-march=x86-64-v3 -mtune=generic -ffp-contract=off)
 add_compile_options(-Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -fdiagnostics-color=always)
 add_link_options(-Wl,--as-needed)
 if(TOILE_SANITIZE)
+    set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
     add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
                         -fno-omit-frame-pointer)
     add_link_options(-fsanitize=address,undefined)
@@ -91,8 +92,8 @@ function(toile_add_plugin name)
 endfunction()
 
 # toile_add_test(name SOURCES ... LINK ... [LABEL label] [SANITIZED]): one GoogleTest program; ctest
-# lists its cases one by one. SANITIZED ones are also built and run by scripts/test under the
-# sanitize preset (target sanitized_tests, label sanitized).
+# lists its cases one by one. SANITIZED ones are also built and run by scripts/test-sanitized under
+# the sanitize preset (target sanitized_tests, label sanitized).
 add_custom_target(sanitized_tests)
 function(toile_add_test name)
     cmake_parse_arguments(ARG "SANITIZED" "LABEL;TIMEOUT" "SOURCES;LINK" ${ARGN})
