@@ -34,6 +34,11 @@ int run(int argc, char** argv) {
 
     try {
         app.parse(argc, argv);
+    } catch (const CLI::RequiredError& e) {
+        const std::vector<std::string> words = app.remaining();
+        if (!app.get_subcommands().empty() || words.empty()) return app.exit(e), kWrongUsage;
+        toile::log::error("'" + words.front() + "' is no command; toile --help lists them");
+        return kWrongUsage;
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? 0 : kWrongUsage;
     } catch (const toile::UsageError& e) {

@@ -127,6 +127,7 @@ void mirror(const MirrorOptions& options, const GlobalOptions& global) {
         throw UsageError("mirror --headless needs --out DIR for its pictures");
     if (!options.headless && !options.out.empty())
         throw UsageError("mirror --out writes pictures only with --headless; a window shows them");
+    (void)options.picture.renderer(); // refuses a wrong size before anything is loaded
     host::catch_interrupts();
     Mirror mirror(options, global);
     if (options.headless)

@@ -42,8 +42,6 @@ class TryOn {
                                          room_.body().model().rest.positions,
                                          room_.body().model().parts)),
           views_(render::views_from_names(options.views)) {
-        for (const std::string& choice : room_.choices())
-            log::info(choice);
         run_options_.measure_contact = !options_.report.empty();
         run_options_.seed = global.seed;
         run_options_.interrupted = [] { return host::interrupt_flag().load(); };
@@ -110,6 +108,8 @@ class TryOn {
     }
 
     void finish(pipeline::TryOnRun& run) {
+        for (const std::string& choice : room_.choices())
+            log::info(choice);
         for (const std::string& fault : room_.person().faults())
             log::warning(fault);
         if (!options_.glb.empty()) save_look(room_.person(), options_.glb);
@@ -129,6 +129,9 @@ void try_on(const TryOnOptions& options, const GlobalOptions& global) {
     if (options.animation.empty() && std::filesystem::path(options.out).extension() != ".png")
         throw UsageError("tryon --out '" + options.out +
                          "': a still is written as .png (with --animation: a folder)");
+    // What is wrong with the call is said before anything is loaded.
+    (void)render::views_from_names(options.views);
+    (void)options.picture.renderer();
     host::catch_interrupts();
     TryOn look(options, global);
     if (options.animation.empty())
