@@ -50,9 +50,9 @@ class Contacts {
     /// Forgets where the samples were; they lie as they were bound.
     void reset() noexcept;
 
-    /// Walks samples to their places on the body as placed now: vertices near the skin always,
-    /// the rest and the centres when it is their turn, which is when vertices look around for
-    /// other parts too. Then lists whom the planes may touch before the next refresh.
+    /// Walks samples to their places on the body as placed now: when it is their turn, which is
+    /// when vertices look around for other parts too, and in between those near the skin that have
+    /// slid over it. Then lists whom the planes may touch before the next refresh.
     void refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
                  const Refresh& when, const ContactSettings& settings) noexcept;
 
@@ -93,6 +93,8 @@ class Contacts {
                       std::vector<ActivePlane>& own, std::vector<ActivePlane>& other) noexcept;
     [[nodiscard]] static Plane plane_at(const MovingBody& body, const Vec4& p,
                                         const SurfacePoint& at) noexcept;
+    [[nodiscard]] bool has_drifted(const MovingBody& body, const Vec4& v, std::size_t sample,
+                                   float seconds) noexcept;
     [[nodiscard]] JointMask mask_for(std::size_t sample, const MovingBody& body,
                                      std::uint32_t triangle) const noexcept;
     void push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
@@ -107,6 +109,7 @@ class Contacts {
     std::vector<std::uint32_t> own_triangle_;    ///< (samples)
     std::vector<std::uint32_t> other_triangle_;  ///< (samples) or kNone
     std::vector<Plane> own_plane_, other_plane_; ///< (samples)
+    std::vector<float> drift_; ///< (samples) m, at most slid over the skin since its last walk
     /// Planes within reach until the next refresh; capacity (samples).
     std::vector<ActivePlane> own_vertices_, other_vertices_, own_centres_, other_centres_;
 };

@@ -53,6 +53,9 @@ class MovingBody {
     [[nodiscard]] std::uint32_t start_on(std::size_t joint, const Vec4& p, float reach,
                                          float period) const noexcept;
 
+    /// m/s, of the fastest point of a joint's part in this step.
+    [[nodiscard]] float speed_of(std::size_t joint) const noexcept { return parts_[joint].speed; }
+
     [[nodiscard]] std::size_t vertex_count() const noexcept { return now_.size(); }
     [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_; }
     [[nodiscard]] std::span<const Vec4> positions() const noexcept { return now_; }
