@@ -128,15 +128,15 @@ void DressedPerson::order_layers() {
         for (std::size_t inner = 0; inner < outer; ++inner)
             overlaps_.push_back(
                 {inner, outer,
-                 garment::LayerOffset(garments_[inner].bound, garments_[inner].triangles(),
-                                      garments_[outer].bound)});
+                 garment::LayerOffset({garments_[inner].bound, garments_[inner].triangles()},
+                                      {garments_[outer].bound, garments_[outer].triangles()})});
 }
 
 void DressedPerson::show() noexcept {
     constexpr float kGap_m = 0.005f;
     for (WornGarment& garment : garments_)
         garment.begin_showing();
-    for (const Overlap& overlap : overlaps_) {
+    for (Overlap& overlap : overlaps_) {
         const WornGarment& inner = garments_[overlap.inner];
         overlap.offset.apply(inner.shown, inner.normals, kGap_m, garments_[overlap.outer].shown);
     }

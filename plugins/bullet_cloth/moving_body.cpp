@@ -41,29 +41,32 @@ void check(const BodyRest& rest) {
     }
 }
 
+/// The joint that moves each triangle most. (nf)
+std::vector<std::uint8_t> triangle_joints(const BodyRest& rest) {
+    std::vector<std::uint8_t> joints(rest.triangles.size());
+    for (std::size_t t = 0; t < joints.size(); ++t) {
+        std::array<float, kBodyJoints> sum{};
+        for (const std::uint32_t v : rest.triangles[t]) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                sum[rest.joints[v][k]] += rest.weights[v][k];
+            }
+        }
+        joints[t] =
+            static_cast<std::uint8_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
+    }
+    return joints;
+}
+
 } // namespace
 
 MovingBody::MovingBody(const BodyRest& rest)
-    : triangles_((check(rest), rest.triangles.begin()), rest.triangles.end()) {
+    : surface_((check(rest), rest.triangles), rest.positions.size(), triangle_joints(rest)) {
     const std::size_t count = rest.positions.size();
-    link_triangles();
-
     std::vector<std::uint8_t> vertex_joint(count, 0);
     for (std::size_t v = 0; v < count; ++v) {
         const auto& w = rest.weights[v];
         const auto k = static_cast<std::size_t>(std::max_element(w.begin(), w.end()) - w.begin());
         vertex_joint[v] = static_cast<std::uint8_t>(rest.joints[v][k]);
-    }
-    triangle_joint_.resize(triangles_.size());
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        std::array<float, kBodyJoints> sum{};
-        for (const std::uint32_t v : triangles_[t]) {
-            for (std::size_t k = 0; k < 4; ++k) {
-                sum[rest.joints[v][k]] += rest.weights[v][k];
-            }
-        }
-        triangle_joint_[t] =
-            static_cast<std::uint8_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
     }
     choose_seeds(rest.positions, vertex_joint);
 
@@ -78,43 +81,6 @@ MovingBody::MovingBody(const BodyRest& rest)
     place(1.0f);
 }
 
-void MovingBody::link_triangles() {
-    const std::size_t count =
-        1 + *std::max_element(&triangles_[0][0], &triangles_[0][0] + 3 * triangles_.size());
-    star_first_.assign(count + 1, 0);
-    for (const Triangle& corner : triangles_) {
-        for (const std::uint32_t v : corner) {
-            ++star_first_[v + 1];
-        }
-    }
-    for (std::size_t v = 0; v < count; ++v) {
-        star_first_[v + 1] += star_first_[v];
-    }
-    star_.resize(3 * triangles_.size());
-    ring_.resize(3 * triangles_.size());
-    std::vector<std::uint32_t> next(star_first_.begin(), star_first_.end() - 1);
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t v = triangles_[t][k];
-            ring_[next[v]] = triangles_[t][(k + 1) % 3];
-            star_[next[v]++] = static_cast<std::uint32_t>(t);
-        }
-    }
-    across_.assign(3 * triangles_.size(), kNone);
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = triangles_[t][k];
-            const std::uint32_t b = triangles_[t][(k + 1) % 3];
-            for (std::uint32_t s = star_first_[a]; s < star_first_[a + 1]; ++s) {
-                const Triangle& other = triangles_[star_[s]];
-                if (star_[s] != t && std::find(other.begin(), other.end(), b) != other.end()) {
-                    across_[3 * t + k] = star_[s];
-                }
-            }
-        }
-    }
-}
-
 /// Farthest-point seeds on the part of each joint.
 void MovingBody::choose_seeds(std::span<const Vec3f> rest,
                               std::span<const std::uint8_t> vertex_joint) {
@@ -123,8 +89,7 @@ void MovingBody::choose_seeds(std::span<const Vec3f> rest,
         Part& part = parts_[joint];
         std::vector<std::uint32_t> members;
         for (std::uint32_t v = 0; v < rest.size(); ++v) {
-            const bool used = v + 1 < star_first_.size() && star_first_[v] < star_first_[v + 1];
-            if (vertex_joint[v] == joint && used) {
+            if (vertex_joint[v] == joint && !surface_.star(v).empty()) {
                 members.push_back(v);
             }
         }
@@ -132,7 +97,7 @@ void MovingBody::choose_seeds(std::span<const Vec3f> rest,
         std::size_t chosen = 0;
         while (!members.empty() && part.vertices.size() < std::min(kSeeds, members.size())) {
             part.vertices.push_back(members[chosen]);
-            part.triangles.push_back(star_[star_first_[members[chosen]]]);
+            part.triangles.push_back(surface_.star(members[chosen]).front());
             for (std::size_t i = 0; i < members.size(); ++i) {
                 apart[i] = std::min(apart[i], (rest[members[i]] - rest[members[chosen]]).norm());
             }
@@ -151,7 +116,7 @@ void MovingBody::choose_seeds(std::span<const Vec3f> rest,
 void MovingBody::compute_normals(std::span<const Vec4> positions,
                                  std::span<Vec4> normals) const noexcept {
     std::fill(normals.begin(), normals.end(), Vec4::Zero());
-    for (const Triangle& corner : triangles_) {
+    for (const Triangle& corner : triangles()) {
         const Vec4 a = positions[corner[0]];
         const Vec4 area = (positions[corner[1]] - a).cross3(positions[corner[2]] - a);
         for (const std::uint32_t v : corner) {
@@ -241,7 +206,7 @@ std::uint32_t MovingBody::start_on(std::size_t joint, const Vec4& p, float reach
 }
 
 Vec4 MovingBody::normal_at(const SurfacePoint& at) const noexcept {
-    const Triangle& corner = triangles_[at.triangle];
+    const Triangle& corner = triangles()[at.triangle];
     const Vec4 sum = at.bary[0] * normal_[corner[0]] + at.bary[1] * normal_[corner[1]] +
                      at.bary[2] * normal_[corner[2]];
     const float length = sum.norm();
@@ -249,7 +214,7 @@ Vec4 MovingBody::normal_at(const SurfacePoint& at) const noexcept {
 }
 
 Vec4 MovingBody::velocity_at(const SurfacePoint& at) const noexcept {
-    const Triangle& corner = triangles_[at.triangle];
+    const Triangle& corner = triangles()[at.triangle];
     Vec4 sum = Vec4::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
         sum += at.bary[k] * (after_[corner[k]] - before_[corner[k]]);

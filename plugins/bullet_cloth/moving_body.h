@@ -3,13 +3,13 @@
 #pragma once
 
 #include "bullet_cloth/link_solver.h"
+#include "geometry/surface_walk.h"
 
 #include <array>
-#include <limits>
 
 namespace toile::bullet_cloth {
 
-inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::uint32_t kNone = geometry::kNoTriangle;
 inline constexpr std::size_t kBodyJoints = 22;
 
 /// A set of joints, one bit each.
@@ -23,13 +23,7 @@ struct BodyRest {
     std::span<const std::array<float, 4>> weights;        ///< (nv)
 };
 
-/// Nearest point found by a walk. `distance` is signed, negative inside.
-struct SurfacePoint {
-    std::uint32_t triangle = kNone;
-    float squared = std::numeric_limits<float>::infinity(); ///< m^2, to the point
-    float bary[3] = {0.0f, 0.0f, 0.0f};
-    Vec4 point = Vec4::Zero();
-};
+using SurfacePoint = geometry::WalkPoint;
 
 class MovingBody {
   public:
@@ -43,7 +37,9 @@ class MovingBody {
 
     /// Goes downhill from `start` over triangles of the joints in `allowed`.
     [[nodiscard]] SurfacePoint walk(const Vec4& p, std::uint32_t start,
-                                    JointMask allowed) const noexcept;
+                                    JointMask allowed) const noexcept {
+        return surface_.walk(now_, p, start, allowed);
+    }
     /// Interpolated unit normal, and velocity (m/s), at a point found by `walk`.
     [[nodiscard]] Vec4 normal_at(const SurfacePoint& at) const noexcept;
     [[nodiscard]] Vec4 velocity_at(const SurfacePoint& at) const noexcept;
@@ -57,15 +53,17 @@ class MovingBody {
     [[nodiscard]] float speed_of(std::size_t joint) const noexcept { return parts_[joint].speed; }
 
     [[nodiscard]] std::size_t vertex_count() const noexcept { return now_.size(); }
-    [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_; }
+    [[nodiscard]] std::span<const Triangle> triangles() const noexcept {
+        return surface_.triangles();
+    }
     [[nodiscard]] std::span<const Vec4> positions() const noexcept { return now_; }
     [[nodiscard]] std::span<const Vec4> normals() const noexcept { return normal_; }
     [[nodiscard]] std::uint8_t joint_of(std::uint32_t triangle) const noexcept {
-        return triangle_joint_[triangle];
+        return surface_.group_of(triangle);
     }
     /// Neighbour across side k (from corner k to k + 1), or kNone.
     [[nodiscard]] std::uint32_t across(std::uint32_t triangle, std::size_t side) const noexcept {
-        return across_[3 * std::size_t{triangle} + side];
+        return surface_.across(triangle, side);
     }
 
   private:
@@ -79,18 +77,10 @@ class MovingBody {
         Vec4 low = Vec4::Zero(), high = Vec4::Zero();
     };
 
-    void link_triangles();
     void choose_seeds(std::span<const Vec3f> rest, std::span<const std::uint8_t> vertex_joint);
-    void closest_on(const Vec4& p, std::uint32_t triangle, SurfacePoint& best,
-                    int& feature) const noexcept;
     void compute_normals(std::span<const Vec4> positions, std::span<Vec4> normals) const noexcept;
 
-    std::vector<Triangle> triangles_;
-    std::vector<std::uint32_t> across_;        ///< (3 nf)
-    std::vector<std::uint32_t> star_first_;    ///< (nv + 1)
-    std::vector<std::uint32_t> star_;          ///< triangles at each vertex
-    std::vector<std::uint32_t> ring_;          ///< the corner after it in each of these
-    std::vector<std::uint8_t> triangle_joint_; ///< (nf) joint that moves it most
+    geometry::SurfaceWalk surface_; ///< groups: the joint that moves a triangle most
     std::array<Part, kBodyJoints> parts_;
     std::vector<Vec4> before_, after_, now_;
     std::vector<Vec4> normal_before_, normal_after_, normal_;
