@@ -9,14 +9,16 @@ extern "C" {
 
 enum {
     TOILE_SURFACE_INVALID = 0,
-    TOILE_SURFACE_BODY = 1,   /* a person's own closed skin                                  */
-    TOILE_SURFACE_GARMENT = 2 /* what is worn over it                                        */
+    TOILE_SURFACE_BODY = 1,    /* a person's own closed skin                                  */
+    TOILE_SURFACE_GARMENT = 2, /* what is worn over it                                       */
+    TOILE_SURFACE_OTHER = 3    /* hair, eyes                                                 */
 };
 
 typedef struct toile_true_camera {
     uint32_t size, reserved;
     double world_from_camera[16]; /* where it really stands, not where describe says         */
     double depth_scale;           /* factor by which its depths are too long                 */
+    const char* name; /* "" when it has none; lives until the sensor is opened again         */
 } toile_true_camera;
 
 typedef struct toile_true_surface {

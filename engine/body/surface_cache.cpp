@@ -4,6 +4,8 @@
 #include "core/bytes.h"
 #include "core/json.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -18,8 +20,10 @@ constexpr std::int64_t kSchema = 1;
 constexpr std::size_t kMostFrameBytes = 256u << 20;
 static_assert(std::endian::native == std::endian::little && sizeof(Vec3f) == 12);
 
+constexpr std::array<std::string_view, 4> kRoles = {"", "body", "garment", "other"};
+
 std::string_view role_name(SurfaceRole role) {
-    return role == SurfaceRole::body ? "body" : "garment";
+    return kRoles.at(static_cast<std::size_t>(role));
 }
 
 fs::path frame_file(const fs::path& folder, std::size_t frame) {
@@ -53,16 +57,16 @@ std::vector<SurfaceRole> read_roles(const fs::path& file, std::size_t meshes) {
     for (JsonObject& surface : root.objects("surfaces")) {
         surface.text("name");
         const std::string role = surface.text("role");
-        if (role != "body" && role != "garment")
-            throw surface.error("role", "must be 'body' or 'garment'");
-        roles.push_back(role == "body" ? SurfaceRole::body : SurfaceRole::garment);
+        const auto known = std::find(kRoles.begin() + 1, kRoles.end(), role);
+        if (known == kRoles.end())
+            throw surface.error("role", "'" + role + "' is none of body, garment, other");
+        roles.push_back(static_cast<SurfaceRole>(known - kRoles.begin()));
         surface.finish();
     }
     root.finish();
     if (roles.size() != meshes)
         throw root.error("surfaces", "names " + std::to_string(roles.size()) +
-                                         " surfaces, surfaces.glb holds " +
-                                         std::to_string(meshes));
+                                         " surfaces, surfaces.glb holds " + std::to_string(meshes));
     return roles;
 }
 

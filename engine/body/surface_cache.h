@@ -13,7 +13,8 @@
 
 namespace toile::body {
 
-enum class SurfaceRole : std::uint8_t { invalid, body, garment };
+/// Values as in abi/truth.h (TOILE_SURFACE_*). `other`: hair, eyes.
+enum class SurfaceRole : std::uint8_t { invalid, body, garment, other };
 
 /// One primitive of the cache's scene.
 struct CachedSurface {

@@ -203,9 +203,8 @@ void TestPersonPoser::pose(const Pose& pose, const RigidTransform& place) noexce
     JointTransforms plain = forward_kinematics(person_.skeleton, pose); // for the rotations
     for (std::size_t j = 0; j < kJointCount; ++j) {
         joints_[j].rotation = place.rotation * plain[j].rotation;
-        joints_[j].translation =
-            0.5f * (bones[heads_[j][0]] * person_.bones[heads_[j][0]].head +
-                    bones[heads_[j][1]] * person_.bones[heads_[j][1]].head);
+        joints_[j].translation = 0.5f * (bones[heads_[j][0]] * person_.bones[heads_[j][0]].head +
+                                         bones[heads_[j][1]] * person_.bones[heads_[j][1]].head);
     }
     for (std::size_t v = 0; v < positions_.size(); ++v) {
         Vec3f sum = Vec3f::Zero();

@@ -15,8 +15,8 @@ inline constexpr double kBodyDensity = 985.0; ///< kg/m3, lungs half filled
 
 struct TestPersonBone {
     std::string name;
-    int parent = -1;               ///< before this one
-    Vec3f head = Vec3f::Zero();    ///< at rest, metres
+    int parent = -1;            ///< before this one
+    Vec3f head = Vec3f::Zero(); ///< at rest, metres
 };
 
 /// Where a girth is taken: a plane that moves with a joint, and the curve in it that is meant.
@@ -40,16 +40,16 @@ struct GirthPlane {
 struct TestPerson {
     std::string id;
     bool woman = false;
-    ShapeRecipe recipe;               ///< what it was made of
-    double displacement_m = 0.0;      ///< 95 % of the smooth displacements are smaller
+    ShapeRecipe recipe;          ///< what it was made of
+    double displacement_m = 0.0; ///< 95 % of the smooth displacements are smaller
     double volume_m3 = 0.0;
-    double bmi = 0.0;                 ///< volume times kBodyDensity by stature squared
-    geometry::TriangleMesh rest;      ///< closed; with normals
-    std::vector<Part> parts;          ///< (nv)
-    std::vector<TestPersonBone> bones; ///< (163)
+    double bmi = 0.0;                             ///< volume times kBodyDensity by stature squared
+    geometry::TriangleMesh rest;                  ///< closed; with normals
+    std::vector<Part> parts;                      ///< (nv)
+    std::vector<TestPersonBone> bones;            ///< (163)
     std::vector<std::vector<BoneWeight>> weights; ///< (nv) four at most, sum 1
-    Skeleton skeleton;                ///< the 22 joints at rest
-    geometry::TriangleMesh eyes;      ///< eyeballs, held by the head; for pictures only
+    Skeleton skeleton;                            ///< the 22 joints at rest
+    geometry::TriangleMesh eyes;                  ///< eyeballs, held by the head; for pictures only
     std::map<std::string, std::uint32_t> landmarks; ///< name -> vertex
     std::vector<GirthPlane> girths;
     std::map<std::string, double> lengths; ///< at rest, metres: stature, crotch_height ...
@@ -85,9 +85,9 @@ class TestPersonPoser {
     [[nodiscard]] Quatf local_rotation(const Driver& driver, const Pose& pose) const noexcept;
 
     const TestPerson& person_;
-    std::vector<Driver> drivers_;          // (bones)
+    std::vector<Driver> drivers_;                                 // (bones)
     std::array<std::array<std::size_t, 2>, kJointCount> heads_{}; // bones whose heads' mean it is
-    std::vector<RigidTransform> bones_;    // (bones) world_from_rest
+    std::vector<RigidTransform> bones_;                           // (bones) world_from_rest
     std::size_t hips_bone_ = 0, head_bone_ = 0;
     JointTransforms joints_;
     std::vector<Vec3f> positions_;

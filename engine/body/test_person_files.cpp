@@ -31,8 +31,9 @@ assets::Scene scene_of(const TestPerson& person) {
         node.name = bone.name;
         node.parent = bone.parent;
         node.translation =
-            bone.parent < 0 ? bone.head
-                            : Vec3f(bone.head - person.bones[static_cast<std::size_t>(bone.parent)].head);
+            bone.parent < 0
+                ? bone.head
+                : Vec3f(bone.head - person.bones[static_cast<std::size_t>(bone.parent)].head);
         skin.joints.push_back(static_cast<int>(scene.nodes.size()));
         scene.nodes.push_back(node);
         Eigen::Matrix4f inverse = Eigen::Matrix4f::Identity();
@@ -86,9 +87,9 @@ void read_scene(const fs::path& file, TestPerson& person) {
         const bool root = parent == skin.joints.end();
         if (!root && parent - skin.joints.begin() >= static_cast<std::ptrdiff_t>(b))
             throw FileError(file.string(), "a bone stands before its parent");
-        person.bones.push_back(
-            {node.name, root ? -1 : static_cast<int>(parent - skin.joints.begin()),
-             Vec3f(-skin.inverse_bind[b].topRightCorner<3, 1>())});
+        person.bones.push_back({node.name,
+                                root ? -1 : static_cast<int>(parent - skin.joints.begin()),
+                                Vec3f(-skin.inverse_bind[b].topRightCorner<3, 1>())});
     }
     assets::Primitive& body = scene.meshes[0].primitives[0];
     person.rest = {std::move(body.positions), std::move(body.normals), std::move(body.triangles)};
@@ -147,8 +148,8 @@ std::vector<Part> read_parts(JsonObject& root, std::size_t vertices) {
         run.finish();
     }
     if (out.size() != vertices)
-        throw root.error("parts", "label " + std::to_string(out.size()) + " vertices, the body has " +
-                                      std::to_string(vertices));
+        throw root.error("parts", "label " + std::to_string(out.size()) +
+                                      " vertices, the body has " + std::to_string(vertices));
     return out;
 }
 

@@ -30,21 +30,27 @@ std::array<Stage, 2> stages(double value, const char* low, const char* middle, c
 }
 
 /// Adds targets that come in a pair, for less and for more.
-void add_pair(ShapeRecipe& recipe, const std::string& name, double amount, const char* less = "decr",
-              const char* more = "incr") {
+void add_pair(ShapeRecipe& recipe, const std::string& name, double amount,
+              const char* less = "decr", const char* more = "incr") {
     if (amount != 0.0) recipe[name + "-" + (amount < 0.0 ? less : more)] += std::abs(amount);
 }
 
 /// Modifiers that training knows too, a handful of them, gently.
 void add_ordinary(ShapeRecipe& recipe, Random& random) {
-    constexpr std::array<const char*, 14> kPairs = {
-        "torso/torso-scale-depth",        "torso/torso-scale-horiz",
-        "torso/torso-vshape",             "torso/torso-muscle-pectoral",
-        "torso/torso-muscle-dorsi",       "hip/hip-scale-depth",
-        "hip/hip-scale-horiz",            "stomach/stomach-tone",
-        "buttocks/buttocks-volume",       "neck/neck-scale-horiz",
-        "measure/measure-shoulder-dist",  "measure/measure-upperarm-length",
-        "measure/measure-upperleg-height", "measure/measure-lowerleg-height"};
+    constexpr std::array<const char*, 14> kPairs = {"torso/torso-scale-depth",
+                                                    "torso/torso-scale-horiz",
+                                                    "torso/torso-vshape",
+                                                    "torso/torso-muscle-pectoral",
+                                                    "torso/torso-muscle-dorsi",
+                                                    "hip/hip-scale-depth",
+                                                    "hip/hip-scale-horiz",
+                                                    "stomach/stomach-tone",
+                                                    "buttocks/buttocks-volume",
+                                                    "neck/neck-scale-horiz",
+                                                    "measure/measure-shoulder-dist",
+                                                    "measure/measure-upperarm-length",
+                                                    "measure/measure-upperleg-height",
+                                                    "measure/measure-lowerleg-height"};
     for (const char* pair : kPairs)
         if (random.uniform() < 0.5) add_pair(recipe, pair, random.uniform(-0.5, 0.5));
     constexpr std::array<const char*, 4> kLimbs = {"upperarm-fat", "lowerarm-muscle",
@@ -59,13 +65,11 @@ void add_ordinary(ShapeRecipe& recipe, Random& random) {
 /// The families that training never sees: whole-body types, asymmetry, breasts.
 void add_held_out(ShapeRecipe& recipe, bool woman, Random& random) {
     constexpr std::array<const char*, 12> kWomen = {
-        "adrenal", "apple",           "diamond", "full-hourglass",  "invert-triangle",
-        "liver",   "lean-column",     "ovary",   "neat-hourglass",  "rectangle",
-        "thyroid", "triangle"};
-    constexpr std::array<const char*, 10> kMen = {"adrenal",     "apple",  "gonadal",
-                                                  "invert-triangle", "lean-column", "liver",
-                                                  "rectangle",   "thyroid", "trapezoid",
-                                                  "triangle"};
+        "adrenal",     "apple", "diamond",        "full-hourglass", "invert-triangle", "liver",
+        "lean-column", "ovary", "neat-hourglass", "rectangle",      "thyroid",         "triangle"};
+    constexpr std::array<const char*, 10> kMen = {
+        "adrenal", "apple",     "gonadal", "invert-triangle", "lean-column",
+        "liver",   "rectangle", "thyroid", "trapezoid",       "triangle"};
     const double share = random.uniform(0.25, 0.7);
     const auto pick = [&](std::size_t n) {
         return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
@@ -99,8 +103,7 @@ void add_breasts(ShapeRecipe& recipe, double age, double muscle, double weight, 
                     for (const Stage& f :
                          stages(firmness, "minfirmness", "averagefirmness", "maxfirmness")) {
                         const std::string shape = std::string(c.name) + "-" + f.name;
-                        const double amount =
-                            a.amount * m.amount * w.amount * c.amount * f.amount;
+                        const double amount = a.amount * m.amount * w.amount * c.amount * f.amount;
                         if (shape == "averagecup-averagefirmness" || amount == 0.0) continue;
                         recipe[std::string("breast/female-") + a.name + "-" + m.name + "-" +
                                w.name + "-" + shape] += amount;
@@ -169,10 +172,11 @@ Draws draw(std::uint32_t number, const TestPeopleOptions& options, Random& rando
     out.proportions = random.uniform(-0.5, 0.5);
     out.stature_m = out.woman ? 1.63 + 0.065 * random.normal() : 1.756 + 0.07 * random.normal();
     // In pairs, so that heavy people are of both sexes.
-    const bool heavy = options.heavy_every > 0 && static_cast<int>(number / 2) % options.heavy_every ==
-                                                      options.heavy_every - 1;
-    out.bmi = heavy ? random.uniform(35.5, 42.0)
-                    : std::clamp(25.0 + 3.5 * random.normal(), 18.5, 33.0);
+    const bool heavy =
+        options.heavy_every > 0 &&
+        static_cast<int>(number / 2) % options.heavy_every == options.heavy_every - 1;
+    out.bmi =
+        heavy ? random.uniform(35.5, 42.0) : std::clamp(25.0 + 3.5 * random.normal(), 18.5, 33.0);
     return out;
 }
 
@@ -205,8 +209,8 @@ void displace(TestPerson& person, double size_m, Random& random) {
         Vec3f axis(static_cast<float>(random.normal()), static_cast<float>(random.normal()),
                    static_cast<float>(random.normal()));
         const auto i = static_cast<std::size_t>(k);
-        wave[i] = axis.normalized() * static_cast<float>(2.0 * std::numbers::pi /
-                                                         random.uniform(0.12, 0.4));
+        wave[i] = axis.normalized() *
+                  static_cast<float>(2.0 * std::numbers::pi / random.uniform(0.12, 0.4));
         phase[i] = static_cast<float>(random.uniform(0.0, 2.0 * std::numbers::pi));
     }
     std::vector<float> height(rest.positions.size(), 0.0f);
@@ -215,7 +219,8 @@ void displace(TestPerson& person, double size_m, Random& random) {
             height[v] += std::cos(wave[k].dot(rest.positions[v]) + phase[k]);
     std::vector<float> size(height.size());
     std::transform(height.begin(), height.end(), size.begin(), [](float h) { return std::abs(h); });
-    const auto most = size.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(size.size()));
+    const auto most =
+        size.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(size.size()));
     std::nth_element(size.begin(), most, size.end());
     const float scale = static_cast<float>(size_m) / *most;
 
@@ -367,9 +372,8 @@ TestPerson make_test_person(const MakeHumanData& data, std::uint32_t number,
     person.woman = draws.woman;
     person.recipe = recipe_of(weight);
     std::vector<Vec3f> positions = shelf.shape(person.recipe);
-    const auto scale =
-        static_cast<float>(draws.stature_m / (static_cast<double>(kMetresPerUnit) *
-                                              height_of(positions)));
+    const auto scale = static_cast<float>(
+        draws.stature_m / (static_cast<double>(kMetresPerUnit) * height_of(positions)));
     for (Vec3f& p : positions)
         p *= kMetresPerUnit * scale;
 
@@ -385,8 +389,8 @@ TestPerson make_test_person(const MakeHumanData& data, std::uint32_t number,
     person.eyes = cut_out(positions, triangulate(data.eyes));
     if (options.out_of_model && options.most_displacement_m > 0.0) {
         Random smooth = stream(3);
-        displace(person,
-                 smooth.uniform(options.least_displacement_m, options.most_displacement_m), smooth);
+        displace(person, smooth.uniform(options.least_displacement_m, options.most_displacement_m),
+                 smooth);
     }
     stand_on_floor(person);
     find_test_person_truth(person);

@@ -37,7 +37,8 @@ class Finder {
         plane.normal = normal.normalized();
         const auto cut = geometry::Plane::through(near, normal);
         float best = std::numeric_limits<float>::infinity();
-        for (const auto& loop : geometry::slice(person_.rest.positions, person_.rest.triangles, cut)) {
+        for (const auto& loop :
+             geometry::slice(person_.rest.positions, person_.rest.triangles, cut)) {
             const Vec3f middle = loop.centroid();
             const float d = (middle - near).norm();
             if (!loop.closed || loop.length() < 0.08 || !(d < best)) continue;
@@ -50,8 +51,7 @@ class Finder {
     }
 
     void keep(const std::string& name, Joint moves_with, std::optional<GirthPlane> plane) {
-        if (!plane)
-            throw Error("test person '" + person_.id + "': no place found for its " + name);
+        if (!plane) throw Error("test person '" + person_.id + "': no place found for its " + name);
         plane->name = name;
         plane->joint = moves_with;
         person_.girths.push_back(*plane);
@@ -64,8 +64,8 @@ class Finder {
         const int steps = std::max(1, static_cast<int>((to - from).norm() / kStep));
         std::optional<GirthPlane> best;
         for (int i = 0; i <= steps; ++i) {
-            const auto tried =
-                measure(from + static_cast<float>(i) / static_cast<float>(steps) * (to - from), normal);
+            const auto tried = measure(
+                from + static_cast<float>(i) / static_cast<float>(steps) * (to - from), normal);
             if (tried && (!best || (tried->girth > best->girth) == largest)) best = tried;
         }
         return best;
@@ -119,8 +119,9 @@ class Finder {
              extreme(at(crotch_ + 0.02f), at(std::min(waist, hips + 0.06f)), up, true));
         const Vec3f neck = joint(Joint::neck);
         const Vec3f head = joint(Joint::head);
-        keep("neck_girth", Joint::neck,
-             extreme(neck + 0.35f * (head - neck), neck + 0.8f * (head - neck), head - neck, false));
+        keep(
+            "neck_girth", Joint::neck,
+            extreme(neck + 0.35f * (head - neck), neck + 0.8f * (head - neck), head - neck, false));
     }
 
     void limbs(bool left) {
@@ -136,8 +137,8 @@ class Finder {
         const auto between = [this](Joint a, Joint b, float share) {
             return Vec3f(joint(a) + share * (joint(b) - joint(a)));
         };
-        const float thigh = (joint(hip).y() - (crotch_ - kBelowCrotch)) /
-                            (joint(hip).y() - joint(knee).y());
+        const float thigh =
+            (joint(hip).y() - (crotch_ - kBelowCrotch)) / (joint(hip).y() - joint(knee).y());
         keep(side + "thigh_girth", hip, measure(between(hip, knee, thigh), up));
         keep(side + "knee_girth", knee, measure(joint(knee), up));
         keep(side + "calf_girth", knee,
@@ -151,12 +152,11 @@ class Finder {
              extreme(between(elbow, wrist, 0.85f), between(elbow, wrist, 1.0f), fore, false));
     }
 
-    [[nodiscard]] std::uint32_t
-    best_vertex(const std::function<float(const Vec3f&)>& score) const {
+    [[nodiscard]] std::uint32_t best_vertex(const std::function<float(const Vec3f&)>& score) const {
         const auto& positions = person_.rest.positions;
-        const auto best = std::max_element(
-            positions.begin(), positions.end(),
-            [&](const Vec3f& a, const Vec3f& b) { return score(a) < score(b); });
+        const auto best =
+            std::max_element(positions.begin(), positions.end(),
+                             [&](const Vec3f& a, const Vec3f& b) { return score(a) < score(b); });
         return static_cast<std::uint32_t>(best - positions.begin());
     }
 
@@ -181,8 +181,7 @@ class Finder {
                 const bool above = std::hypot(p.x() - shoulder.x(), p.z() - shoulder.z()) < 0.025f;
                 return above ? p.y() : -1e3f;
             });
-            const Vec3f& acromion =
-                person_.rest.positions[person_.landmarks[side + "acromion"]];
+            const Vec3f& acromion = person_.rest.positions[person_.landmarks[side + "acromion"]];
             person_.lengths[side + "arm_length"] = far(acromion, elbow) + far(elbow, wrist);
         }
         person_.volume_m3 = geometry::volume(person_.rest);

@@ -46,8 +46,8 @@ struct Truth {
         });
     }
     template <class P>
-    static constexpr toile_truth table{sizeof(toile_truth), 0,          &people<P>,
-                                       &camera<P>,          &surface_count<P>, &surface<P>};
+    static constexpr toile_truth table{sizeof(toile_truth), 0,          &people<P>, &camera<P>,
+                                       &surface_count<P>,   &surface<P>};
 };
 
 } // namespace toile::sdk

@@ -17,8 +17,8 @@ enum class CameraModel : std::uint8_t { invalid, kinect_v1, kinect_v2 };
 
 /// Each effect has a switch; where a number stands, 0 is off.
 struct NoiseSettings {
-    double axial = 1.0;   ///< times sigma_z of Nguyen et al. 2012: see axial_sigma
-    double lateral = 1.0; ///< times sigma_L of the same: see lateral_sigma
+    double axial = 1.0;       ///< times sigma_z of Nguyen et al. 2012: see axial_sigma
+    double lateral = 1.0;     ///< times sigma_L of the same: see lateral_sigma
     bool quantisation = true; ///< disparity in 1/8 pixel, rounded to nearest
     bool shadow = true;       ///< no reading where the projector does not reach
     bool ragged = true;       ///< readings lost at silhouettes, on grazing surfaces and in hair
@@ -45,7 +45,7 @@ struct CameraSettings {
     /// width and height change places.
     bool upright = false;
     Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity(); ///< as it really stands
-    double nearest_m = 0.5; ///< no readings below
+    double nearest_m = 0.5;                                              ///< no readings below
     double farthest_m = 8.0;
     NoiseSettings noise;
 

@@ -18,8 +18,8 @@ std::uint8_t encode(float linear) {
     static const std::vector<std::uint8_t> table = [] {
         std::vector<std::uint8_t> made(kEncodings);
         for (std::size_t i = 0; i < made.size(); ++i)
-            made[i] = static_cast<std::uint8_t>(std::lround(
-                255.0f * srgb_from_linear(static_cast<float>(i) / (kEncodings - 1))));
+            made[i] = static_cast<std::uint8_t>(
+                std::lround(255.0f * srgb_from_linear(static_cast<float>(i) / (kEncodings - 1))));
         return made;
     }();
     const float clamped = std::clamp(linear, 0.0f, 1.0f);
@@ -44,10 +44,9 @@ Vec3f sample(const imaging::Image& image, const Vec2f& coords) {
     const int x = static_cast<int>(std::floor(u));
     const int y = static_cast<int>(std::floor(v));
     const auto texel = [&](int dx, int dy) {
-        const std::size_t i =
-            4 * (static_cast<std::size_t>(wrap(y + dy, image.height)) *
-                     static_cast<std::size_t>(image.width) +
-                 static_cast<std::size_t>(wrap(x + dx, image.width)));
+        const std::size_t i = 4 * (static_cast<std::size_t>(wrap(y + dy, image.height)) *
+                                       static_cast<std::size_t>(image.width) +
+                                   static_cast<std::size_t>(wrap(x + dx, image.width)));
         return Vec3f(decode(image.pixels[i]), decode(image.pixels[i + 1]),
                      decode(image.pixels[i + 2]));
     };
@@ -123,13 +122,13 @@ struct Shader {
             return Vec3f(weight[0] * values[corners[0]] + weight[1] * values[corners[1]] +
                          weight[2] * values[corners[2]]);
         };
-        Vec3f color =
-            surface.look.albedo.cwiseProduct(grain_color(surface.look.grain, between(surface.rest)));
+        Vec3f color = surface.look.albedo.cwiseProduct(
+            grain_color(surface.look.grain, between(surface.rest)));
         if (surface.look.texture && !surface.corner_coords.empty()) {
             const Vec2f* coords = surface.corner_coords.data() + 3 * hits.triangle[pixel];
-            color = color.cwiseProduct(
-                sample(*surface.look.texture, Vec2f(weight[0] * coords[0] + weight[1] * coords[1] +
-                                                    weight[2] * coords[2])));
+            color = color.cwiseProduct(sample(
+                *surface.look.texture,
+                Vec2f(weight[0] * coords[0] + weight[1] * coords[1] + weight[2] * coords[2])));
         }
         Vec3f normal = between(stage.normals(hits.surface[pixel])).normalized();
         if (normal.dot(direction) > 0.0f) normal = -normal;
@@ -164,16 +163,16 @@ Vec3f grain_color(Grain grain, const Vec3f& p) noexcept {
         return Vec3f::Constant(1.0f + 0.08f * value_noise(90.0f * p) +
                                0.06f * value_noise(220.0f * p));
     case Grain::hair:
-        return Vec3f::Constant(1.0f + 0.5f * value_noise(Vec3f(250.0f * p.x(), 25.0f * p.y(),
-                                                               250.0f * p.z())));
+        return Vec3f::Constant(
+            1.0f + 0.5f * value_noise(Vec3f(250.0f * p.x(), 25.0f * p.y(), 250.0f * p.z())));
     case Grain::boards: { // 12 cm wide, along z
         const int board = static_cast<int>(std::floor(p.x() / 0.12f));
         const float tone = 0.12f * (static_cast<float>(hash(board, 0, 7)) * 0x1.0p-31f - 1.0f);
         const float groove = p.x() / 0.12f - static_cast<float>(board) < 0.03f ? 0.6f : 1.0f;
-        return groove * Vec3f::Constant(1.0f + tone +
-                                        0.1f * value_noise(Vec3f(60.0f * p.x(), 0.0f,
-                                                                 3.0f * p.z() +
-                                                                     static_cast<float>(board))));
+        return groove *
+               Vec3f::Constant(1.0f + tone +
+                               0.1f * value_noise(Vec3f(60.0f * p.x(), 0.0f,
+                                                        3.0f * p.z() + static_cast<float>(board))));
     }
     case Grain::plaster:
         return Vec3f::Constant(1.0f + 0.03f * value_noise(12.0f * p) +

@@ -7,9 +7,9 @@ namespace toile::simulated_sensor {
 
 /// One lamp and the light that the room throws back. Linear colours.
 struct Lighting {
-    Vec3f lamp_position = Vec3f(0.9f, 2.6f, 2.2f);       ///< world, metres
-    Vec3f lamp_color = Vec3f(5.0f, 4.7f, 4.2f);          ///< irradiance at one metre
-    Vec3f ambient_color = Vec3f(0.30f, 0.32f, 0.36f);    ///< from above; 40 % of it from below
+    Vec3f lamp_position = Vec3f(0.9f, 2.6f, 2.2f);    ///< world, metres
+    Vec3f lamp_color = Vec3f(5.0f, 4.7f, 4.2f);       ///< irradiance at one metre
+    Vec3f ambient_color = Vec3f(0.30f, 0.32f, 0.36f); ///< from above; 40 % of it from below
 };
 
 /// Buffers are taken once; `shade` allocates nothing.

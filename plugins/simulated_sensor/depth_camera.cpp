@@ -21,10 +21,10 @@ constexpr float kShadowDisparity = 1.5f;
 /// Neighbours whose disparities differ by less than this are one surface seen by the projector.
 constexpr float kSameDisparity = 0.6f;
 
-constexpr float kRaggedShare = 0.35f;  // of readings right beside a silhouette that are lost
-constexpr float kHairShare = 0.3f;     // of readings in hair that are lost
-constexpr float kGrazingFrom = 0.21f;  // cosine (78 degrees) from which readings begin to be lost
-constexpr float kGrazingTo = 0.05f;    // and at which (87 degrees) all are
+constexpr float kRaggedShare = 0.35f; // of readings right beside a silhouette that are lost
+constexpr float kHairShare = 0.3f;    // of readings in hair that are lost
+constexpr float kGrazingFrom = 0.21f; // cosine (78 degrees) from which readings begin to be lost
+constexpr float kGrazingTo = 0.05f;   // and at which (87 degrees) all are
 
 /// Standard normal variables below this are the given share of all. (Only shares used here.)
 float below(float share) {
@@ -43,8 +43,7 @@ bool jump(float a, float b) {
 
 } // namespace
 
-SystematicErrors draw_errors(const NoiseSettings& noise, std::uint64_t seed,
-                             std::uint32_t camera) {
+SystematicErrors draw_errors(const NoiseSettings& noise, std::uint64_t seed, std::uint32_t camera) {
     const PixelRandom random(seed, camera, 0xffffffffu);
     const auto normal = [&](int k) {
         return static_cast<double>(random.normal(Draw::systematic, k, 0));
@@ -74,8 +73,8 @@ DepthCamera::DepthCamera(const CameraSettings& settings, std::uint64_t seed, std
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const auto ray = imaging::unproject(intrinsics_, Eigen::Vector2d(x, y), 1.0);
-            directions_.push_back(
-                ray ? Vec3f((R * *ray).cast<float>()) : Vec3f(Vec3f::Constant(kUnknown)));
+            directions_.push_back(ray ? Vec3f((R * *ray).cast<float>())
+                                      : Vec3f(Vec3f::Constant(kUnknown)));
         }
     near_silhouette_.resize(pixels);
     reach_.resize(pixels);
@@ -218,8 +217,7 @@ float DepthCamera::nearest_tilt(int x, int y) const {
     float nearest = kNothing;
     float cosine = 1.0f;
     for (int k = std::max(0, y - kReach); k <= std::min(intrinsics_.height - 1, y + kReach); ++k)
-        for (int i = std::max(0, x - kReach); i <= std::min(intrinsics_.width - 1, x + kReach);
-             ++i)
+        for (int i = std::max(0, x - kReach); i <= std::min(intrinsics_.width - 1, x + kReach); ++i)
             if (hits_.depth[at(i, k)] < nearest) {
                 nearest = hits_.depth[at(i, k)];
                 cosine = hits_.cosine[at(i, k)];
@@ -246,15 +244,14 @@ void DepthCamera::shift_silhouettes(const Stage& stage, const PixelRandom& rando
                     y + sigma * static_cast<double>(random.smooth_normal(Draw::shift_y, x, y)));
                 const auto ray = imaging::unproject(intrinsics_, place, 1.0);
                 if (!ray) continue;
-                const Vec3f direction =
-                    (settings_.world_from_camera.linear() * *ray).cast<float>();
+                const Vec3f direction = (settings_.world_from_camera.linear() * *ray).cast<float>();
                 const Hit beside = stage.trace(from, direction);
                 if (!jump(beside.depth, hits_.depth[i])) continue;
                 seen_[i] = beside;
-                const int u = std::clamp(static_cast<int>(std::lround(place.x())), 0,
-                                         intrinsics_.width - 1);
-                const int v = std::clamp(static_cast<int>(std::lround(place.y())), 0,
-                                         intrinsics_.height - 1);
+                const int u =
+                    std::clamp(static_cast<int>(std::lround(place.x())), 0, intrinsics_.width - 1);
+                const int v =
+                    std::clamp(static_cast<int>(std::lround(place.y())), 0, intrinsics_.height - 1);
                 dark_[i] = shadowed_[at(u, v)];
             }
     };

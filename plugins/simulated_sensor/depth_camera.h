@@ -10,8 +10,8 @@ namespace toile::simulated_sensor {
 
 /// What one camera has wrong for a whole recording.
 struct SystematicErrors {
-    double depth_scale = 1.0;                                            ///< factor on its depths
-    Eigen::Isometry3d pose_error = Eigen::Isometry3d::Identity();        ///< in the camera's frame
+    double depth_scale = 1.0;                                     ///< factor on its depths
+    Eigen::Isometry3d pose_error = Eigen::Isometry3d::Identity(); ///< in the camera's frame
 };
 /// Drawn from the seed: depth scale uniform, axis of the turn uniform on the sphere, its angle and
 /// the shift along each axis normal.

@@ -1,6 +1,6 @@
 // Kind toile.sensor/1: simulated:SCENARIO.json, and toile.truth/1 beside it.
-#include "sdk/plugin.h"
 #include "core/error.h"
+#include "sdk/plugin.h"
 #include "sdk/sensor.h"
 #include "sdk/thread_pool.h"
 #include "sdk/truth.h"
@@ -46,7 +46,9 @@ class SimulatedSensor {
         simulator_.reset();
         if (*uri == '\0') throw sdk::bad_argument("simulated: names no scenario (simulated:FILE)");
         const auto rows = [pool = pool_](std::uint32_t count, std::uint32_t grain,
-                                         const auto& body) { pool.parallel_for(count, grain, body); };
+                                         const auto& body) {
+            pool.parallel_for(count, grain, body);
+        };
         try {
             auto scenario = sensor::load_scenario(uri);
             job.progress(0.1);
@@ -104,8 +106,9 @@ class SimulatedSensor {
         out.timestamp_ns = static_cast<std::int64_t>(std::llround(1e9 * scenario.time_of(frame)));
         out.depth_m = sdk::view_of<float>(camera.depth().metres);
         const toile::imaging::Image& picture = simulator_->picture(stream);
-        out.color = sdk::view_of<sdk::Byte4>(
-            {reinterpret_cast<const sdk::Byte4*>(picture.pixels.data()), picture.pixels.size() / 4});
+        out.color =
+            sdk::view_of<sdk::Byte4>({reinterpret_cast<const sdk::Byte4*>(picture.pixels.data()),
+                                      picture.pixels.size() / 4});
         return TOILE_OK;
     }
 
@@ -144,6 +147,7 @@ class SimulatedSensor {
         out.size = sizeof(out);
         copy(of(stream).settings().world_from_camera, out.world_from_camera);
         out.depth_scale = of(stream).errors().depth_scale;
+        out.name = of(stream).settings().name.c_str();
         return out;
     }
 
@@ -164,10 +168,8 @@ class SimulatedSensor {
             index -= static_cast<std::uint32_t>(simulator_->figures()[person++]->surfaces().size());
         const sensor::FigureSurface& found = simulator_->figures()[person]->surfaces()[index];
         give(found, sink);
-        return {sizeof(toile_true_surface),
-                static_cast<std::uint32_t>(found.is_body ? TOILE_SURFACE_BODY
-                                                         : TOILE_SURFACE_GARMENT),
-                person + 1, 0, found.surface.name.c_str()};
+        return {sizeof(toile_true_surface), static_cast<std::uint32_t>(found.role), person + 1, 0,
+                found.surface.name.c_str()};
     }
 
   private:

@@ -5,7 +5,6 @@
 #include "body/body_model.h"
 #include "body/motion.h"
 #include "body/skinning.h"
-#include "body/surface_cache.h"
 #include "body/test_person.h"
 #include "core/error.h"
 
@@ -17,6 +16,7 @@ namespace toile::simulated_sensor {
 namespace {
 
 namespace fs = std::filesystem;
+using body::SurfaceRole;
 
 const Vec3f kSkinTone(0.47f, 0.27f, 0.18f); // linear
 const Vec3f kEyeTone(0.6f, 0.57f, 0.53f);
@@ -63,8 +63,9 @@ WeldedSurface weld(const assets::Scene& scene, const assets::Primitive& primitiv
                        primitive.texcoords.empty() ? none : primitive.texcoords, layout);
     WeldedSurface out;
     out.welded = layout.welded;
-    out.figure.surface = {name, mesh.triangles, corners_of(primitive.triangles, primitive.texcoords),
-                          mesh.positions, look_of(scene, primitive.material, grain)};
+    out.figure.surface = {name, mesh.triangles,
+                          corners_of(primitive.triangles, primitive.texcoords), mesh.positions,
+                          look_of(scene, primitive.material, grain)};
     out.figure.positions = std::move(mesh.positions);
     return out;
 }
@@ -115,10 +116,10 @@ class AvatarFigure : public Figure {
                               corners_of(model_.layout.triangles, model_.layout.texcoords),
                               model_.rest.positions, look},
                              model_.rest.positions,
-                             true});
+                             SurfaceRole::body});
         if (!settings.hair) return;
         hair_.emplace(*settings.hair, model_.rest.positions, model_.rest.triangles, model_.parts);
-        surfaces_.push_back({hair_->surface(), hair_->surface().rest, false});
+        surfaces_.push_back({hair_->surface(), hair_->surface().rest, SurfaceRole::other});
     }
 
   private:
@@ -134,8 +135,7 @@ class AvatarFigure : public Figure {
             for (std::size_t j = 0; j < body::kJointCount; ++j)
                 model_.skeleton.rest_positions[j] += amount * model_.shape[c].joint_offsets[j];
         }
-        geometry::vertex_normals(model_.rest.positions, model_.rest.triangles,
-                                 model_.rest.normals);
+        geometry::vertex_normals(model_.rest.positions, model_.rest.triangles, model_.rest.normals);
     }
 
     void pose_at(double time_s, const RigidTransform& place) override {
@@ -166,19 +166,25 @@ class TestPersonFigure : public Figure {
     explicit TestPersonFigure(const PersonSettings& settings)
         : Figure(settings), person_(body::load_test_person(settings.source)), poser_(person_) {
         motion_ = motion_of(settings, person_.skeleton, nullptr);
-        surfaces_.push_back({{person_.id, person_.rest.triangles, {}, person_.rest.positions,
+        surfaces_.push_back({{person_.id,
+                              person_.rest.triangles,
+                              {},
+                              person_.rest.positions,
                               {settings.skin.value_or(kSkinTone), nullptr, Grain::skin}},
                              person_.rest.positions,
-                             true});
-        surfaces_.push_back({{"eyes", person_.eyes.triangles, {}, person_.eyes.positions,
+                             SurfaceRole::body});
+        surfaces_.push_back({{"eyes",
+                              person_.eyes.triangles,
+                              {},
+                              person_.eyes.positions,
                               {kEyeTone, nullptr, Grain::plain}},
                              person_.eyes.positions,
-                             false});
+                             SurfaceRole::other});
         if (!settings.hair) return;
         normals_.resize(person_.rest.positions.size());
         hair_.emplace(*settings.hair, person_.rest.positions, person_.rest.triangles,
                       person_.parts);
-        surfaces_.push_back({hair_->surface(), hair_->surface().rest, false});
+        surfaces_.push_back({hair_->surface(), hair_->surface().rest, SurfaceRole::other});
     }
 
   private:
@@ -206,7 +212,7 @@ class MeshFigure : public Figure {
     explicit MeshFigure(const PersonSettings& settings) : Figure(settings) {
         surfaces_ = load_surfaces(settings.source);
         for (FigureSurface& surface : surfaces_) {
-            surface.is_body = true;
+            surface.role = SurfaceRole::body;
             surface.surface.look.grain = Grain::skin;
             if (settings.skin) surface.surface.look = {*settings.skin, nullptr, Grain::skin};
         }
@@ -225,12 +231,11 @@ class CachedFigure : public Figure {
     explicit CachedFigure(const PersonSettings& settings)
         : Figure(settings), cache_(body::open_surface_cache(settings.source)) {
         for (const body::CachedSurface& cached : cache_.surfaces) {
-            const bool body = cached.role == body::SurfaceRole::body;
-            const auto& primitive =
-                cache_.scene.meshes[cached.mesh].primitives[cached.primitive];
-            WeldedSurface made = weld(cache_.scene, primitive, cached.name,
-                                      body ? Grain::skin : Grain::cloth);
-            made.figure.is_body = body;
+            const bool body = cached.role == SurfaceRole::body;
+            const auto& primitive = cache_.scene.meshes[cached.mesh].primitives[cached.primitive];
+            WeldedSurface made =
+                weld(cache_.scene, primitive, cached.name, body ? Grain::skin : Grain::cloth);
+            made.figure.role = cached.role;
             if (body && settings.skin)
                 made.figure.surface.look = {*settings.skin, nullptr, Grain::skin};
             surfaces_.push_back(std::move(made.figure));
@@ -267,9 +272,8 @@ class CachedFigure : public Figure {
 } // namespace
 
 void Figure::pose(double time_s) {
-    const double spin = settings_.turntable_s > 0.0
-                            ? 2.0 * std::numbers::pi * time_s / settings_.turntable_s
-                            : 0.0;
+    const double spin =
+        settings_.turntable_s > 0.0 ? 2.0 * std::numbers::pi * time_s / settings_.turntable_s : 0.0;
     pose_at(time_s, turn_about_y(settings_.turn + spin, settings_.position));
 }
 
@@ -305,9 +309,9 @@ std::vector<FigureSurface> load_surfaces(const fs::path& mesh) {
                               primitive, scene.skins[static_cast<std::size_t>(node.skin)], world)
                         : primitive.positions;
             for (std::size_t v = 0; v < posed.size(); ++v) {
-                const Vec3f p =
-                    skinned ? posed[v]
-                            : Vec3f((world[n] * posed[v].homogeneous()).template head<3>());
+                const Vec3f p = skinned
+                                    ? posed[v]
+                                    : Vec3f((world[n] * posed[v].homogeneous()).template head<3>());
                 made.figure.positions[made.welded[v]] = p;
             }
             made.figure.surface.rest = made.figure.positions;

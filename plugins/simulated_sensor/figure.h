@@ -1,7 +1,7 @@
 // One person of a scenario, whatever the body is made of: surfaces and joints at any time.
 #pragma once
 
-#include "body/track_file.h"
+#include "body/surface_cache.h"
 #include "simulated_sensor/scenario.h"
 #include "simulated_sensor/stage.h"
 
@@ -13,7 +13,7 @@ namespace toile::simulated_sensor {
 struct FigureSurface {
     Surface surface;
     std::vector<Vec3f> positions; ///< (nv) world
-    bool is_body = false;         ///< the person's own skin, not clothes, hair or eyes
+    body::SurfaceRole role = body::SurfaceRole::other;
 };
 
 class Figure {

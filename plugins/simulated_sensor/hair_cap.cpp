@@ -9,8 +9,9 @@ namespace {
 
 /// Hair grows above a plane through the head's middle that rises towards the face.
 const Vec3f kCrown = Vec3f(0.0f, 0.72f, -0.69f).normalized();
-constexpr float kHairline = 0.1f; // of the head's height: the plane stands this far above its middle
-constexpr float kFullAt = 0.35f;  // and the hair is at its thickest this far above the plane
+constexpr float kHairline =
+    0.1f;                        // of the head's height: the plane stands this far above its middle
+constexpr float kFullAt = 0.35f; // and the hair is at its thickest this far above the plane
 constexpr float kLeast_m = 0.002f;
 
 struct Head {

@@ -10,13 +10,13 @@ namespace toile::simulated_sensor {
 /// What a number is drawn for; draws for different purposes are independent.
 enum class Draw : std::uint8_t {
     invalid,
-    depth,    ///< axial noise
-    shift_x,  ///< lateral noise, pixels along x
-    shift_y,  ///< the same along y
-    ragged,   ///< readings lost at silhouettes
-    grazing,  ///< readings lost on surfaces seen edge on
-    hair,     ///< readings lost in hair
-    red,      ///< colour noise
+    depth,   ///< axial noise
+    shift_x, ///< lateral noise, pixels along x
+    shift_y, ///< the same along y
+    ragged,  ///< readings lost at silhouettes
+    grazing, ///< readings lost on surfaces seen edge on
+    hair,    ///< readings lost in hair
+    red,     ///< colour noise
     green,
     blue,
     systematic, ///< errors that stay the same over a recording

@@ -88,9 +88,8 @@ NoiseSettings read_noise(JsonObject noise, const NoiseSettings& before, CameraMo
     out.color = noise.number_or("color", 0.0, 10.0, out.color);
     out.correlated = switch_or(noise, "correlated", out.correlated);
     out.depth_scale = noise.number_or("depth_scale", 0.0, 0.1, out.depth_scale);
-    out.extrinsic_rotation =
-        kDegree * noise.number_or("extrinsic_rotation_deg", 0.0, 30.0,
-                                  out.extrinsic_rotation / kDegree);
+    out.extrinsic_rotation = kDegree * noise.number_or("extrinsic_rotation_deg", 0.0, 30.0,
+                                                       out.extrinsic_rotation / kDegree);
     out.extrinsic_translation_m =
         noise.number_or("extrinsic_translation_m", 0.0, 1.0, out.extrinsic_translation_m);
     noise.finish();
@@ -104,9 +103,11 @@ CameraSettings read_camera(JsonObject& camera, JsonObject& root, std::size_t num
     CameraSettings out = camera_of(*model);
     out.name = camera.text_or("name", "camera" + std::to_string(number));
     if (out.name.empty() || out.name.size() > 64 ||
-        out.name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") !=
+        out.name.find_first_not_of(
+            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") !=
             std::string::npos)
-        throw camera.error("name", "must be 1 to 64 letters, digits, _ or -: a folder is called so");
+        throw camera.error("name",
+                           "must be 1 to 64 letters, digits, _ or -: a folder is called so");
     const std::string mount = camera.text_or("mount", "landscape");
     if (mount != "landscape" && mount != "upright")
         throw camera.error("mount", "'" + mount + "' is neither landscape nor upright");
@@ -114,8 +115,8 @@ CameraSettings read_camera(JsonObject& camera, JsonObject& root, std::size_t num
     const Vec3f position = point_or(camera, "position", Vec3f(0.0f, 1.0f, 2.4f));
     const Vec3f target = point_or(camera, "look_at", Vec3f(0.0f, position.y(), 0.0f));
     try {
-        out.world_from_camera = look_at(position.cast<double>(), target.cast<double>(),
-                                        degrees_or(camera, "roll_deg"));
+        out.world_from_camera =
+            look_at(position.cast<double>(), target.cast<double>(), degrees_or(camera, "roll_deg"));
     } catch (const JsonError&) {
         throw;
     } catch (const Error& e) {

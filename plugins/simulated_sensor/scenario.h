@@ -16,17 +16,17 @@ enum class BodyKind : std::uint8_t { invalid, avatar, mesh, surfaces, test_perso
 
 struct PersonSettings {
     BodyKind kind = BodyKind::invalid;
-    std::filesystem::path source;        ///< the avatar's or person's folder, mesh file, or cache
-    std::vector<double> shape;           ///< coefficients of an avatar's shape components
-    std::filesystem::path motion;        ///< moves through it once, then stays; empty: none
+    std::filesystem::path source; ///< the avatar's or person's folder, mesh file, or cache
+    std::vector<double> shape;    ///< coefficients of an avatar's shape components
+    std::filesystem::path motion; ///< moves through it once, then stays; empty: none
     std::vector<std::filesystem::path> poses; ///< one after the other, then stays in the last
-    double hold_s = 0.0;                 ///< how long each pose is held
-    double change_s = 1.0;               ///< and how long the way to the next takes
-    double turntable_s = 0.0;            ///< seconds a turn; 0: does not turn
-    Vec3f position = Vec3f::Zero();      ///< where the person's own x = z = 0 is, metres
-    double turn = 0.0;                   ///< about +Y, radians
+    double hold_s = 0.0;                      ///< how long each pose is held
+    double change_s = 1.0;                    ///< and how long the way to the next takes
+    double turntable_s = 0.0;                 ///< seconds a turn; 0: does not turn
+    Vec3f position = Vec3f::Zero();           ///< where the person's own x = z = 0 is, metres
+    double turn = 0.0;                        ///< about +Y, radians
     std::optional<HairSettings> hair;
-    std::optional<Vec3f> skin;           ///< linear; instead of the body's own colours
+    std::optional<Vec3f> skin; ///< linear; instead of the body's own colours
 };
 
 struct ObjectSettings {

@@ -95,8 +95,7 @@ struct Stage::Tree {
                         " triangles");
         for (std::size_t i = 0; i < triangles.size(); ++i)
             std::copy(triangles[i].begin(), triangles[i].end(), indices + 3 * i);
-        rtcAttachGeometryByID(scene, geometry.handle,
-                              static_cast<unsigned>(geometries.size()));
+        rtcAttachGeometryByID(scene, geometry.handle, static_cast<unsigned>(geometries.size()));
         geometries.push_back(geometry);
     }
 };

@@ -376,11 +376,12 @@ AT(toile_sensor, describe, 24);
 AT(toile_sensor, poll, 32);
 AT(toile_sensor, release, 40);
 
-SIZE(toile_true_camera, 144);
+SIZE(toile_true_camera, 152);
 AT(toile_true_camera, size, 0);
 AT(toile_true_camera, reserved, 4);
 AT(toile_true_camera, world_from_camera, 8);
 AT(toile_true_camera, depth_scale, 136);
+AT(toile_true_camera, name, 144);
 
 SIZE(toile_true_surface, 24);
 AT(toile_true_surface, size, 0);
