@@ -209,6 +209,8 @@ TestPerson load_test_person(const fs::path& folder) {
     for (JsonObject& entry : root.objects("girths"))
         person.girths.push_back(read_girth(entry));
     JsonObject lengths = root.object("lengths");
+    for (const char* needed : {"stature", "crotch_height"})
+        (void)lengths.number(needed, 0.0, kFar);
     for (const std::string& name : lengths.keys())
         person.lengths[name] = lengths.number(name, 0.0, kFar);
     person.parts = read_parts(root, vertices);

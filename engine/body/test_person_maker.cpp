@@ -16,7 +16,8 @@ namespace {
 constexpr float kMetresPerUnit = 0.1f; // the data is in decimetres
 constexpr std::size_t kBodyVertices = 13380;
 constexpr int kWaves = 32;
-constexpr double kMostWeight = 1.5;
+constexpr double kMostMacroWeight = 1.2; // of the macro targets; beyond, girths grow directly
+constexpr double kMostWeight = 3.0;
 
 /// A value from -1 to 1 as amounts of the data's three stages; beyond 1 the outer one goes on and
 /// the middle one is taken back.
@@ -60,6 +61,20 @@ void add_ordinary(ShapeRecipe& recipe, Random& random) {
         for (const char* side : {"l-", "r-"})
             add_pair(recipe, std::string("armslegs/") + side + limb, amount);
     }
+}
+
+/// Girths of people who are heavier than the data's fattest: the measure targets, all together.
+void add_bulk(ShapeRecipe& recipe, double amount) {
+    constexpr std::array<std::pair<const char*, double>, 8> kGirths = {{{"waist", 1.0},
+                                                                        {"hips", 0.9},
+                                                                        {"bust", 0.8},
+                                                                        {"underbust", 0.9},
+                                                                        {"thigh", 0.8},
+                                                                        {"upperarm", 0.8},
+                                                                        {"neck", 0.5},
+                                                                        {"calf", 0.5}}};
+    for (const auto& [girth, share] : kGirths)
+        recipe[std::string("measure/measure-") + girth + "-circ-incr"] += share * amount;
 }
 
 /// The families that training never sees: whole-body types, asymmetry, breasts.
@@ -352,14 +367,16 @@ TestPerson make_test_person(const MakeHumanData& data, std::uint32_t number,
     Random body_random = stream(0);
     const Draws draws = draw(number, options, body_random);
     const auto recipe_of = [&](double weight) {
-        ShapeRecipe recipe = macro_recipe(draws.woman, draws.age, draws.muscle, weight,
-                                          draws.height, draws.proportions);
+        const double macro = std::min(weight, kMostMacroWeight);
+        ShapeRecipe recipe = macro_recipe(draws.woman, draws.age, draws.muscle, macro, draws.height,
+                                          draws.proportions);
+        if (weight > macro) add_bulk(recipe, weight - macro);
         Random ordinary = stream(1);
         add_ordinary(recipe, ordinary);
         if (!options.out_of_model) return recipe;
         Random held = stream(2);
         add_held_out(recipe, draws.woman, held);
-        if (draws.woman) add_breasts(recipe, draws.age, draws.muscle, weight, held);
+        if (draws.woman) add_breasts(recipe, draws.age, draws.muscle, macro, held);
         return recipe;
     };
     TargetShelf shelf(data);

@@ -124,6 +124,7 @@ struct Shader {
         };
         Vec3f color = surface.look.albedo.cwiseProduct(
             grain_color(surface.look.grain, between(surface.rest)));
+        if (!surface.tint.empty()) color = color.cwiseProduct(between(surface.tint));
         if (surface.look.texture && !surface.corner_coords.empty()) {
             const Vec2f* coords = surface.corner_coords.data() + 3 * hits.triangle[pixel];
             color = color.cwiseProduct(sample(

@@ -20,6 +20,9 @@ using body::SurfaceRole;
 
 const Vec3f kSkinTone(0.47f, 0.27f, 0.18f); // linear
 const Vec3f kEyeTone(0.6f, 0.57f, 0.53f);
+const Vec3f kLayerTone(0.16f, 0.17f, 0.19f); // of a painted base layer
+constexpr float kBelowNeck = 0.07f;          // metres: where it begins
+constexpr float kBelowCrotch = 0.12f;        // and where it ends
 
 RigidTransform turn_about_y(double angle, const Vec3f& position) {
     return {Quatf(Eigen::AngleAxisf(static_cast<float>(angle), Vec3f::UnitY())), position};
@@ -160,6 +163,22 @@ class AvatarFigure : public Figure {
     std::optional<HairCap> hair_;
 };
 
+/// Skin, and a base layer painted on trunk and thighs as avatars have one.
+std::vector<Vec3f> paint(const body::TestPerson& person, const Vec3f& skin) {
+    const float top = person.skeleton.rest(body::Joint::neck).y() - kBelowNeck;
+    const float bottom = static_cast<float>(person.lengths.at("crotch_height")) - kBelowCrotch;
+    std::vector<Vec3f> out(person.rest.positions.size(), skin);
+    for (std::size_t v = 0; v < out.size(); ++v) {
+        const body::Part part = person.parts[v];
+        const float y = person.rest.positions[v].y();
+        const bool trunk = part == body::Part::torso || part == body::Part::pelvis ||
+                           part == body::Part::left_upper_leg ||
+                           part == body::Part::right_upper_leg;
+        if (trunk && y < top && y > bottom) out[v] = kLayerTone;
+    }
+    return out;
+}
+
 /// A person made outside of the body space.
 class TestPersonFigure : public Figure {
   public:
@@ -170,7 +189,8 @@ class TestPersonFigure : public Figure {
                               person_.rest.triangles,
                               {},
                               person_.rest.positions,
-                              {settings.skin.value_or(kSkinTone), nullptr, Grain::skin}},
+                              {Vec3f::Ones(), nullptr, Grain::skin},
+                              paint(person_, settings.skin.value_or(kSkinTone))},
                              person_.rest.positions,
                              SurfaceRole::body});
         surfaces_.push_back({{"eyes",

@@ -26,6 +26,8 @@ void check(const Surface& surface, std::span<const Vec3f> positions) {
         throw refuse("has not three texture coordinates a triangle");
     if (surface.rest.size() != positions.size())
         throw refuse("its rest positions are not as many as its vertices");
+    if (!surface.tint.empty() && surface.tint.size() != positions.size())
+        throw refuse("its tints are not as many as its vertices");
     for (const Vec3f& p : positions)
         if (!p.allFinite()) throw refuse("a position is not finite");
 }

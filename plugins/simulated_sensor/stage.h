@@ -28,6 +28,7 @@ struct Surface {
     std::vector<Vec2f> corner_coords; ///< (3 nf) texture coordinates from the top left, or empty
     std::vector<Vec3f> rest;          ///< (nv) metres; where the grain is fixed
     SurfaceLook look;
+    std::vector<Vec3f> tint; ///< (nv) linear; multiplies the albedo, or empty
 };
 
 /// Rays of one camera: they leave `origin` and have length 1 along its axis, so that a hit's

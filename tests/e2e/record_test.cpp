@@ -128,7 +128,9 @@ TEST_F(RecordTest, ADressedAnimationIsSeenThroughItsCache) {
         const float b = bare_depth.metres[i];
         more += !std::isnan(a) && std::isnan(b) ? 1 : 0;
         behind += std::isnan(a) && !std::isnan(b) ? 1 : 0;
-        if (!std::isnan(a) && !std::isnan(b)) EXPECT_LT(a, b + 0.004f);
+        if (!std::isnan(a) && !std::isnan(b)) {
+            EXPECT_LT(a, b + 0.004f);
+        }
     }
     EXPECT_GT(more, 500);
     EXPECT_LT(behind, 50);

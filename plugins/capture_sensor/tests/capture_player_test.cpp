@@ -111,8 +111,9 @@ TEST(CaptureSensor, KeepsTheRulesOfItsKindOnARecording) {
     const auto plugin =
         host::Plugin::link(toile_plugin_entry_capture_sensor, manifest(folder.path()));
     for (const host::ContractCase& rule : host::contract_cases())
-        if (host::applies(rule, plugin->manifest()))
+        if (host::applies(rule, plugin->manifest())) {
             EXPECT_NO_THROW(host::run_contract_case(rule, plugin)) << rule.name;
+        }
 }
 
 TEST(CaptureSensor, TellsCalibrationAndPose) {

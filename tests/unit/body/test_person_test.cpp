@@ -60,10 +60,11 @@ TEST(TestPeople, AreClosedAdultsOfTheWantedBuild) {
         EXPECT_TRUE(geometry::check_topology(made.rest.positions, made.rest.triangles).closed());
         EXPECT_GT(geometry::volume(made.rest), 0.03);
         EXPECT_THAT(made.lengths.at("stature"), testing::AllOf(testing::Gt(1.4), testing::Lt(2.0)));
-        if (number >= 6)
+        if (number >= 6) {
             EXPECT_GT(made.bmi, 35.0) << made.id;
-        else
+        } else {
             EXPECT_THAT(made.bmi, testing::AllOf(testing::Gt(17.5), testing::Lt(34.5)));
+        }
         float lowest = 1.0f;
         for (const Vec3f& p : made.rest.positions)
             lowest = std::min(lowest, p.y());
@@ -211,7 +212,9 @@ TEST(TestPeople, EveryPartIsLabelled) {
     EXPECT_EQ(count.size(), 12u);
     const auto& made = person(0);
     for (std::size_t v = 0; v < made.parts.size(); ++v)
-        if (made.parts[v] == Part::left_lower_leg) EXPECT_GT(made.rest.positions[v].x(), 0.0f);
+        if (made.parts[v] == Part::left_lower_leg) {
+            EXPECT_GT(made.rest.positions[v].x(), 0.0f);
+        }
 }
 
 TEST(TestPeople, AreReadBackAsTheyWereWritten) {
