@@ -113,7 +113,7 @@ double lateral_sigma(double tilt) {
 }
 
 double quantise(double z, double baseline_focal) {
-    const double steps = std::round(kDisparitySteps * baseline_focal / z);
+    const double steps = std::rint(kDisparitySteps * baseline_focal / z);
     return steps > 0.0 ? kDisparitySteps * baseline_focal / steps
                        : std::numeric_limits<double>::infinity();
 }

@@ -124,12 +124,14 @@ void DepthCamera::measure(const Stage& stage, std::uint32_t frame, const RowLoop
                      if (noise.ragged && lost(stage, random, x, y)) continue;
                      auto z = static_cast<double>(hit.depth);
                      if (noise.axial > 0.0) {
-                         const double tilt = std::acos(static_cast<double>(hit.cosine));
+                         // Below 60 degrees the tilt does not count.
+                         const double tilt =
+                             hit.cosine < 0.5f ? std::acos(static_cast<double>(hit.cosine)) : 0.0;
                          z += noise.axial * axial_sigma(z, tilt) * static_cast<double>(noise_[i]);
                      }
                      if (noise.quantisation) z = quantise(z, focal);
                      z *= errors_.depth_scale;
-                     if (round_to_mm) z = std::round(1e3 * z) * 1e-3;
+                     if (round_to_mm) z = std::rint(1e3 * z) * 1e-3;
                      if (z >= settings_.nearest_m && z <= settings_.farthest_m)
                          depth_.metres[i] = static_cast<float>(z);
                  }
@@ -225,6 +227,15 @@ float DepthCamera::nearest_tilt(int x, int y) const {
     return std::acos(cosine);
 }
 
+// Does a place in the picture lie beside a pixel that a jump in depth parts from pixel i?
+bool DepthCamera::crosses(std::size_t i, const Eigen::Vector2d& place) const {
+    const int u = std::clamp(static_cast<int>(std::floor(place.x())), 0, intrinsics_.width - 2);
+    const int v = std::clamp(static_cast<int>(std::floor(place.y())), 0, intrinsics_.height - 2);
+    const auto& depth = hits_.depth;
+    return jump(depth[at(u, v)], depth[i]) || jump(depth[at(u + 1, v)], depth[i]) ||
+           jump(depth[at(u, v + 1)], depth[i]) || jump(depth[at(u + 1, v + 1)], depth[i]);
+}
+
 // Lateral noise: a silhouette's pixels see what lies a random shift beside them. Within a surface
 // depth stays what it is, since the measured axial noise already holds what shifts do there.
 void DepthCamera::shift_silhouettes(const Stage& stage, const PixelRandom& random,
@@ -242,6 +253,7 @@ void DepthCamera::shift_silhouettes(const Stage& stage, const PixelRandom& rando
                 const Eigen::Vector2d place(
                     x + sigma * static_cast<double>(random.smooth_normal(Draw::shift_x, x, y)),
                     y + sigma * static_cast<double>(random.smooth_normal(Draw::shift_y, x, y)));
+                if (!crosses(i, place)) continue;
                 const auto ray = imaging::unproject(intrinsics_, place, 1.0);
                 if (!ray) continue;
                 const Vec3f direction = (settings_.world_from_camera.linear() * *ray).cast<float>();

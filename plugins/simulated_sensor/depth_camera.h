@@ -54,6 +54,7 @@ class DepthCamera {
     void fill_noise(const PixelRandom& random, const RowLoop& rows);
     [[nodiscard]] bool lost(const Stage& stage, const PixelRandom& random, int x, int y) const;
     [[nodiscard]] float nearest_tilt(int x, int y) const;
+    [[nodiscard]] bool crosses(std::size_t i, const Eigen::Vector2d& place) const;
     [[nodiscard]] std::size_t at(int x, int y) const noexcept {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(intrinsics_.width) +
                static_cast<std::size_t>(x);

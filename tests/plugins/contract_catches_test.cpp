@@ -167,7 +167,6 @@ class Puppet {
         check_open(stream);
         if (polled_ == 5) {
             seen_all_ = true;
-            if (is("camera goes on")) polled_ = 4;
             return is("camera goes on") ? TOILE_NO_NEW_DATA : TOILE_END_OF_STREAM;
         }
         out.sequence = is("sequence stays") ? 1 : polled_;
