@@ -184,8 +184,7 @@ TEST(TestPeople, GirthsAreThoseOfTheirPlanes) {
         EXPECT_THAT(girth["waist_girth"], testing::AllOf(testing::Gt(0.55), testing::Lt(1.5)));
         EXPECT_THAT(girth["hip_girth"], testing::AllOf(testing::Gt(0.75), testing::Lt(1.6)));
         EXPECT_THAT(girth["neck_girth"], testing::AllOf(testing::Gt(0.26), testing::Lt(0.55)));
-        EXPECT_THAT(girth["left_wrist_girth"],
-                    testing::AllOf(testing::Gt(0.1), testing::Lt(0.24)));
+        EXPECT_THAT(girth["left_wrist_girth"], testing::AllOf(testing::Gt(0.1), testing::Lt(0.24)));
         EXPECT_GT(girth["left_thigh_girth"], girth["left_calf_girth"]);
         EXPECT_GT(girth["left_calf_girth"], girth["left_ankle_girth"]);
         EXPECT_NEAR(girth["left_knee_girth"], girth["right_knee_girth"], 0.03);
