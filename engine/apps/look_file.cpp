@@ -1,6 +1,7 @@
 #include "apps/look_file.h"
 
 #include "assets/files.h"
+#include "pipeline/body_frame.h"
 
 namespace toile::apps {
 namespace {
@@ -42,9 +43,8 @@ assets::Primitive posed_body(const pipeline::DressedPerson& person) {
     return out;
 }
 
-} // namespace
-
-void save_look(const pipeline::DressedPerson& person, const std::filesystem::path& file) {
+/// The body first, then the garments; one mesh each.
+assets::Scene scene_of(const pipeline::DressedPerson& person) {
     const body::BodyModel& model = person.body().model();
     const assets::Scene appearance = assets::load_scene(model.folder / (model.id + ".glb"));
     assets::Scene scene;
@@ -68,7 +68,43 @@ void save_look(const pipeline::DressedPerson& person, const std::filesystem::pat
         }
         append_mesh(scene, garment.garment().package().manifest.id, std::move(primitives));
     }
-    assets::save_scene(scene, file);
+    return scene;
+}
+
+std::vector<body::SurfaceRole> roles_of(const pipeline::DressedPerson& person) {
+    std::vector<body::SurfaceRole> roles(1 + person.garments().size(), body::SurfaceRole::garment);
+    roles.front() = body::SurfaceRole::body;
+    return roles;
+}
+
+} // namespace
+
+void save_look(const pipeline::DressedPerson& person, const std::filesystem::path& file) {
+    assets::save_scene(scene_of(person), file);
+}
+
+void LookCache::add(const pipeline::DressedPerson& person, const pipeline::BodyFrame& frame) {
+    if (folder_.empty()) return;
+    if (!writer_) {
+        writer_.emplace(folder_, scene_of(person), roles_of(person));
+        first_ns_ = frame.timestamp_ns;
+    }
+    const auto& welded = person.body().model().layout.welded;
+    body_.resize(welded.size());
+    for (std::size_t v = 0; v < welded.size(); ++v)
+        body_[v] = person.posed().positions[welded[v]];
+    std::vector<std::span<const Vec3f>> positions = {body_};
+    for (const pipeline::WornGarment& garment : person.garments())
+        for (const auto& surface : garment.surfaces)
+            positions.emplace_back(surface.positions);
+    body::TrackedPerson tracked;
+    tracked.id = frame.person_id;
+    tracked.state = static_cast<body::TrackState>(frame.tracking);
+    tracked.joints = pipeline::transforms_of(frame.joints);
+    for (std::size_t j = 0; j < frame.joints.size(); ++j)
+        tracked.confidence[j] = frame.joints[j].confidence;
+    writer_->add(1e-9 * static_cast<double>(frame.timestamp_ns - first_ns_), std::span(&tracked, 1),
+                 positions);
 }
 
 } // namespace toile::apps

@@ -24,6 +24,7 @@ struct TryOnOptions {
     std::string out;
     std::string views = "front";
     std::string glb;
+    std::string cache;
     std::string report;
     std::uint64_t frames = 0;
     PictureOptions picture;
@@ -74,6 +75,7 @@ class TryOn {
         pipeline::TryOnRun run(source, room_.person(), run_options_);
         PictureFolder pictures(options_.out);
         TrackFile track(options_.out);
+        LookCache cache(options_.cache);
         const auto context = render::make_offscreen_context();
         Look look(*context, options_.picture.renderer(), room_.person(),
                   options_.picture.colourway);
@@ -90,6 +92,7 @@ class TryOn {
             run.end_drawing();
             pictures.add(picture);
             track.add(run.frame());
+            cache.add(room_.person(), run.frame());
             progress.frame();
         }
         pictures.make_film("tryon", kFramesPerSecond);
@@ -129,6 +132,8 @@ void try_on(const TryOnOptions& options, const GlobalOptions& global) {
     if (options.animation.empty() && std::filesystem::path(options.out).extension() != ".png")
         throw UsageError("tryon --out '" + options.out +
                          "': a still is written as .png (with --animation: a folder)");
+    if (options.animation.empty() && !options.cache.empty())
+        throw UsageError("tryon --cache keeps the frames of an --animation; there is none");
     // What is wrong with the call is said before anything is loaded.
     (void)render::views_from_names(options.views);
     (void)options.picture.renderer();
@@ -168,6 +173,10 @@ void add_tryon_commands(CLI::App& app, const GlobalOptions& global) {
     command->add_option("--glb", options->glb, "Writes the dressed body as a 3D file too")
         ->type_name("look.glb");
     command->add_option("--frames", options->frames, "With --animation: stops after this many");
+    command
+        ->add_option("--cache", options->cache,
+                     "With --animation: keeps body and garment surfaces of every frame")
+        ->type_name("DIR");
     command->add_option("--report", options->report, "File for the figures of the run, as JSON")
         ->type_name("FILE");
     options->picture.add_to(*command);

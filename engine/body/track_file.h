@@ -3,8 +3,10 @@
 
 #include "body/skeleton.h"
 
+#include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace toile::body {
 
@@ -24,5 +26,16 @@ struct TrackedPerson {
 /// give the same bytes everywhere. \throw Error for a value that is not finite
 [[nodiscard]] std::string track_line(std::uint64_t frame, double time_s,
                                      std::span<const TrackedPerson> people);
+
+/// One line of a track.
+struct TrackFrame {
+    std::uint64_t frame = 0;
+    double time_s = 0.0;
+    std::vector<TrackedPerson> people;
+};
+
+/// A whole track as it stands in the file; joints that are missing go with their parents.
+/// \throw FileError naming the line
+[[nodiscard]] std::vector<TrackFrame> read_track_frames(const std::filesystem::path& file);
 
 } // namespace toile::body

@@ -6,16 +6,6 @@ namespace {
 
 using PluginPtr = std::shared_ptr<const Plugin>;
 
-void sensor_refuses(const PluginPtr& plugin) {
-    Bench bench(plugin);
-    bench.activate();
-    const auto& table = bench.table<toile_sensor>();
-    bench.fails("open", "for a file that is not there",
-                [&](auto* i) { return table.open(i, "/no/such/file.contract", nullptr); });
-    auto frame = sized<toile_frame>();
-    bench.fails("poll", "before open", [&](auto* i) { return table.poll(i, 0, &frame); });
-}
-
 void scanner_refuses(const PluginPtr& plugin) {
     Bench bench(plugin);
     bench.activate();
@@ -44,7 +34,6 @@ void tool_describes(const PluginPtr& plugin) {
 }
 
 constexpr ContractCase kCases[] = {
-    {TOILE_SENSOR, "sensor: wrong calls are refused with a text", &sensor_refuses},
     {TOILE_SCANNER, "scanner: wrong calls are refused with a text", &scanner_refuses},
     {TOILE_RESIZER, "resizer: wrong calls are refused with a text", &resizer_refuses},
     {TOILE_TOOL, "tool: describes its command", &tool_describes},

@@ -16,6 +16,7 @@ constexpr const char* kTool[] = {"describe", "run"};
 constexpr const char* kParameters[] = {"count", "describe", "get", "set"};
 constexpr const char* kState[] = {"save", "load"};
 constexpr const char* kDebugDraw[] = {"lines"};
+constexpr const char* kTruth[] = {"people", "camera", "surface_count", "surface"};
 
 // `n` calls now, the first `base` of them in ABI 1.0.
 template <std::size_t n>
@@ -36,6 +37,7 @@ constexpr std::array kExtensions{
     table(TOILE_PARAMETERS, kParameters),
     table(TOILE_STATE, kState),
     table(TOILE_DEBUG_DRAW, kDebugDraw),
+    table(TOILE_TRUTH, kTruth),
 };
 constexpr std::array kHostExtensions{TOILE_THREAD_POOL};
 
@@ -51,6 +53,7 @@ static_assert(table(TOILE_TOOL, kTool).size == sizeof(toile_tool));
 static_assert(table(TOILE_PARAMETERS, kParameters).size == sizeof(toile_parameters));
 static_assert(table(TOILE_STATE, kState).size == sizeof(toile_state));
 static_assert(table(TOILE_DEBUG_DRAW, kDebugDraw).size == sizeof(toile_debug_draw));
+static_assert(table(TOILE_TRUTH, kTruth).size == sizeof(toile_truth));
 
 } // namespace
 

@@ -75,5 +75,9 @@ template <>
 struct KindOf<toile_debug_draw> {
     static constexpr const char* id = TOILE_DEBUG_DRAW;
 };
+template <>
+struct KindOf<toile_truth> {
+    static constexpr const char* id = TOILE_TRUTH;
+};
 
 } // namespace toile::host

@@ -12,4 +12,5 @@
 #include "sdk/skinning.h"
 #include "sdk/thread_pool.h"
 #include "sdk/tool.h"
+#include "sdk/truth.h"
 #include "sdk/views.h"

@@ -1,10 +1,10 @@
-// Kind toile.sensor/1 (draft) for a class P with
+// Kind toile.sensor/1 for a class P with
 //     void open(const char* uri, Job job);                                             // [worker]
 //     std::uint32_t stream_count();                                                      // [main]
 //     toile_stream describe(std::uint32_t stream);                                       // [main]
-//     toile_status poll(std::uint32_t stream, toile_frame& out); // views live until release
-//     [frame] void release(const toile_frame& frame);                                           //
-//     [frame]
+//     toile_status poll(std::uint32_t stream, toile_frame& out);                        // [frame]
+//     void release(const toile_frame& frame);                                           // [frame]
+// The views that poll gives live until release.
 #pragma once
 
 #include "abi/sensor.h"

@@ -376,6 +376,28 @@ AT(toile_sensor, describe, 24);
 AT(toile_sensor, poll, 32);
 AT(toile_sensor, release, 40);
 
+SIZE(toile_true_camera, 152);
+AT(toile_true_camera, size, 0);
+AT(toile_true_camera, reserved, 4);
+AT(toile_true_camera, world_from_camera, 8);
+AT(toile_true_camera, depth_scale, 136);
+AT(toile_true_camera, name, 144);
+
+SIZE(toile_true_surface, 24);
+AT(toile_true_surface, size, 0);
+AT(toile_true_surface, role, 4);
+AT(toile_true_surface, person_id, 8);
+AT(toile_true_surface, reserved, 12);
+AT(toile_true_surface, name, 16);
+
+SIZE(toile_truth, 40);
+AT(toile_truth, size, 0);
+AT(toile_truth, reserved, 4);
+AT(toile_truth, people, 8);
+AT(toile_truth, camera, 16);
+AT(toile_truth, surface_count, 24);
+AT(toile_truth, surface, 32);
+
 SIZE(toile_skinning, 24);
 AT(toile_skinning, size, 0);
 AT(toile_skinning, reserved, 4);

@@ -24,12 +24,13 @@ bool is(const char* name) {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 int calls = 0;
 
-/// Garments follow the hips, cloth is where its targets are, and the log has five frames.
+/// Garments follow the hips, cloth is where its targets are, the log has five frames, and so has
+/// its one camera of two pixels.
 class Puppet {
   public:
     static constexpr sdk::Info info{
         .id = "test.puppet", .name = "Puppet", .version = "1.0.0", .vendor = "Test"};
-    using Kinds = sdk::Kinds<sdk::Garment, sdk::Cloth, sdk::BodySource>;
+    using Kinds = sdk::Kinds<sdk::Garment, sdk::Cloth, sdk::BodySource, sdk::Sensor>;
 
     explicit Puppet(sdk::Host) {}
 
@@ -138,7 +139,58 @@ class Puppet {
     }
     void end() {}
 
+    // ---- sensor
+    void open(const char* uri, sdk::Job) {
+        std::ifstream in(uri);
+        std::string word;
+        in >> word;
+        if (word != "puppet" && !is("any recording"))
+            throw sdk::Failure(TOILE_E_IO, "not a puppet recording");
+        open_ = true;
+        reset();
+    }
+    void reset() {
+        if (!is("reset forgotten") || !seen_all_) polled_ = 0;
+    }
+    std::uint32_t stream_count() { return is("no cameras") ? 0 : 1; }
+    toile_stream describe(std::uint32_t stream) {
+        check_open(stream);
+        toile_stream out{};
+        out.depth = {2, 1, is("no focal length") ? 0.0 : 1.0, 1.0, 0.5, 0.0, {}};
+        out.frame_period_s = 0.1;
+        for (int k = 0; k < 4; ++k)
+            out.world_from_camera[5 * k] = is("bent pose") ? 2.0 : 1.0;
+        out.has_world = 1;
+        return out;
+    }
+    toile_status poll(std::uint32_t stream, toile_frame& out) {
+        check_open(stream);
+        if (polled_ == 5) {
+            seen_all_ = true;
+            return is("camera goes on") ? TOILE_NO_NEW_DATA : TOILE_END_OF_STREAM;
+        }
+        out.sequence = is("sequence stays") ? 1 : polled_;
+        out.timestamp_ns = is("camera time runs back") ? -polled_ : polled_;
+        ++polled_;
+        depth_ = {1.0f, is("depth 0") ? 0.0f : kNan};
+        if (is("camera differs")) depth_[0] += static_cast<float>(++calls);
+        out.depth_m = sdk::view_of<float>(depth_);
+        if (is("pixel missing")) out.depth_m.count = 1;
+        return TOILE_OK;
+    }
+    void release(const toile_frame&) {}
+
   private:
+    void check_open(std::uint32_t stream) const {
+        if (!open_ && !is("polled before open")) throw sdk::bad_argument("not open");
+        if (stream > 0 && !is("second camera")) throw sdk::bad_argument("stream: no such camera");
+    }
+
+    bool open_ = false;
+    bool seen_all_ = false;
+    std::uint32_t polled_ = 0;
+    std::array<float, 2> depth_{};
+
     std::vector<Float3> rest_;
     Float3 hips_{};
     std::map<std::uint32_t, std::uint32_t> garments_;
@@ -161,7 +213,7 @@ std::string broken_rule(const std::string& with) {
     Manifest manifest;
     manifest.id = "test.puppet";
     manifest.version = "1.0.0";
-    manifest.provides = {TOILE_GARMENT, TOILE_CLOTH, TOILE_BODY_SOURCE};
+    manifest.provides = {TOILE_GARMENT, TOILE_CLOTH, TOILE_BODY_SOURCE, TOILE_SENSOR};
     manifest.schemes = {"puppet"};
     manifest.sample = folder / "sample.txt";
     fault = with;
@@ -223,6 +275,22 @@ const Broken kBroken[] = {
     {"rotation 2", "result: a rotation that is not a unit quaternion [contract_broken]"},
     {"joint NaN", "result: returns numbers that are not finite [non_finite]"},
     {"source differs", "result: two runs give different bytes [contract_broken]"},
+    {"any recording", "open: answers TOILE_OK for a file that is not there, an error was wanted "
+                      "[contract_broken]"},
+    {"polled before open",
+     "poll: answers TOILE_OK before open, an error was wanted [contract_broken]"},
+    {"no cameras", "stream_count: no cameras, or too many [contract_broken]"},
+    {"no focal length", "describe: intrinsics that make no sense [contract_broken]"},
+    {"bent pose", "describe: world_from_camera is not a rigid motion [contract_broken]"},
+    {"second camera", "describe: answers TOILE_OK for a camera that is not there, an error was "
+                      "wanted [contract_broken]"},
+    {"sequence stays", "poll: sequence does not rise [contract_broken]"},
+    {"camera time runs back", "poll: time does not rise [contract_broken]"},
+    {"depth 0", "poll: a depth that is neither positive nor NaN [contract_broken]"},
+    {"pixel missing", "poll: depth is not one float a pixel [contract_broken]"},
+    {"camera differs", "poll: two runs give different bytes [contract_broken]"},
+    {"camera goes on", "poll: goes on after the end of the recording [contract_broken]"},
+    {"reset forgotten", "reset: the recording does not begin anew [contract_broken]"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, ContractCatches, ::testing::ValuesIn(kBroken),
