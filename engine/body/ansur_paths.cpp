@@ -35,7 +35,7 @@ std::uint32_t extreme(std::span<const Vec3f> positions, std::span<const std::uin
 }
 
 /// Girth across a bone at the share of its length, of those tried, where it is largest or least.
-Measured limb_girth(const TemplateBody& body, std::span<const Triangle> triangles, Joint from,
+Measured limb_girth(const BodyShape& body, std::span<const Triangle> triangles, Joint from,
                     Joint to, std::initializer_list<float> shares, bool largest) {
     const Vec3f start = body.skeleton.rest(from), bone = body.skeleton.rest(to) - start;
     Measured best;
@@ -93,8 +93,7 @@ AnsurPaths::AnsurPaths(const AvatarTemplate& avatar, std::span<const Part> label
                                            Part::right_upper_leg};
     constexpr std::array<Part, 3> kNeck = {Part::neck, Part::head, Part::torso};
     constexpr std::array<Part, 2> kArm = {Part::left_upper_arm, Part::left_lower_arm};
-    constexpr std::array<Part, 3> kLeg = {Part::left_upper_leg, Part::left_lower_leg,
-                                          Part::pelvis};
+    constexpr std::array<Part, 3> kLeg = {Part::left_upper_leg, Part::left_lower_leg, Part::pelvis};
     trunk_ = triangles_of(kTrunk, labels, false);
     seat_ = triangles_of(kSeat, labels, false);
     neck_ = triangles_of(kNeck, labels, false);
@@ -127,8 +126,7 @@ AnsurPaths::AnsurPaths(const AvatarTemplate& avatar, std::span<const Part> label
 }
 
 std::vector<Triangle> AnsurPaths::triangles_of(std::span<const Part> parts,
-                                               std::span<const Part> labels,
-                                               bool left_only) const {
+                                               std::span<const Part> labels, bool left_only) const {
     std::vector<Triangle> out;
     for (const auto& t : avatar_.mesh.triangles)
         if (std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
@@ -139,7 +137,7 @@ std::vector<Triangle> AnsurPaths::triangles_of(std::span<const Part> parts,
     return out;
 }
 
-std::vector<Measured> AnsurPaths::measure(const TemplateBody& body) const {
+std::vector<Measured> AnsurPaths::measure(const BodyShape& body) const {
     const auto& p = body.positions;
     const Vec3f up = Vec3f::UnitY();
     const std::uint32_t floor = extreme(p, soles_, -up);
@@ -156,13 +154,14 @@ std::vector<Measured> AnsurPaths::measure(const TemplateBody& body) const {
     out.push_back(level(trunk_, navel_));
     out.push_back(level(seat_, seat));
     out.push_back(tape_girth(p, leg_, p[crotch_] - kGlutealFold * up, up, &crotch_));
-    out.push_back(limb_girth(body, neck_, Joint::neck, Joint::head, {0.4f, 0.5f, 0.6f, 0.7f, 0.8f},
-                             false));
+    out.push_back(
+        limb_girth(body, neck_, Joint::neck, Joint::head, {0.4f, 0.5f, 0.6f, 0.7f, 0.8f}, false));
     out.push_back(limb_girth(body, arm_, Joint::left_upper_arm, Joint::left_lower_arm,
                              {0.45f, 0.5f, 0.55f, 0.6f, 0.65f}, true));
     out.push_back(limb_girth(body, arm_, Joint::left_lower_arm, Joint::left_hand,
                              {0.85f, 0.9f, 0.95f, 0.98f}, false));
-    out.push_back(plus(tape_distance(p, acromion_, radiale_), tape_distance(p, radiale_, stylion_)));
+    out.push_back(
+        plus(tape_distance(p, acromion_, radiale_), tape_distance(p, radiale_, stylion_)));
     out.push_back(height(crotch_));
     out.push_back(times(2.0, tape_rise(p, crown_, acromion_, Vec3f::UnitX())));
     out.push_back(limb_girth(body, leg_, Joint::left_lower_leg, Joint::left_foot,

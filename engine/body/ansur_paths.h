@@ -30,12 +30,11 @@ class AnsurPaths {
   public:
     AnsurPaths(const AvatarTemplate& avatar, std::span<const Part> parts);
 
-    [[nodiscard]] std::vector<Measured> measure(const TemplateBody& body) const;
+    [[nodiscard]] std::vector<Measured> measure(const BodyShape& body) const;
 
   private:
-    [[nodiscard]] std::vector<Triangle> triangles_of(std::span<const Part> parts,
-                                                     std::span<const Part> labels,
-                                                     bool left_only) const;
+    [[nodiscard]] std::vector<Triangle>
+    triangles_of(std::span<const Part> parts, std::span<const Part> labels, bool left_only) const;
 
     const AvatarTemplate& avatar_;
     std::vector<Triangle> trunk_, seat_, neck_, arm_, leg_;

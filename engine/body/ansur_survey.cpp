@@ -46,17 +46,14 @@ double number(const std::string& text, const std::string& file, std::size_t line
 
 } // namespace
 
-const char* sex_name(Sex sex) {
-    return sex == Sex::female ? "female" : "male";
-}
-
 Eigen::MatrixXd read_ansur(const std::filesystem::path& folder, Sex sex) {
-    const auto path = folder / (sex == Sex::female ? "ANSUR_II_FEMALE_Public.csv"
-                                                   : "ANSUR_II_MALE_Public.csv");
+    const auto path =
+        folder / (sex == Sex::female ? "ANSUR_II_FEMALE_Public.csv" : "ANSUR_II_MALE_Public.csv");
     const std::string file = path.string();
     std::ifstream in(path);
     std::string line;
-    if (!std::getline(in, line)) throw FileError(file, "cannot be read; is this ANSUR II's folder?");
+    if (!std::getline(in, line))
+        throw FileError(file, "cannot be read; is this ANSUR II's folder?");
     const auto header = split(line, ',');
     const auto& measures = ansur_measures();
     std::vector<std::vector<std::size_t>> columns;
@@ -110,7 +107,8 @@ Eigen::MatrixXd heavy_people(const Eigen::MatrixXd& rows, std::size_t count, dou
 
     Eigen::MatrixXd out(static_cast<int>(count), rows.cols());
     for (int i = 0; i < out.rows(); ++i) {
-        const auto person = static_cast<int>(random.next() % static_cast<std::uint64_t>(rows.rows()));
+        const auto person =
+            static_cast<int>(random.next() % static_cast<std::uint64_t>(rows.rows()));
         out.row(i) = rows.row(person);
         const double stature = out(i, kStature);
         const double weight = random.uniform(low, high) * stature * stature;

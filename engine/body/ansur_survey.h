@@ -1,16 +1,14 @@
 // The people of ANSUR II (public data, 4082 men and 1986 women) as targets for a population.
 #pragma once
 
+#include "body/sex.h"
 #include "core/random.h"
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <vector>
 
 namespace toile::body {
-
-enum class Sex : std::uint8_t { invalid, female, male };
-inline constexpr std::array<Sex, 2> kSexes = {Sex::female, Sex::male};
-[[nodiscard]] const char* sex_name(Sex sex); ///< "female", "male"
 
 /// People of one sex: rows in the order of `ansur_measures`, metres and kilograms, each times its
 /// factor, so that they compare with the template's readings. (people x measures)

@@ -39,12 +39,10 @@ constexpr std::array<NamedFactor, 2> kGenders = {{{"female", kFemale}, {"male", 
 constexpr std::array<NamedFactor, 2> kAges = {{{"young", kYoung}, {"old", kOld}}};
 constexpr std::array<NamedFactor, 3> kRegions = {
     {{"african", kAfrican}, {"asian", kAsian}, {"caucasian", kCaucasian}}};
-constexpr std::array<NamedFactor, 3> kMuscles = {{{"minmuscle", kMinMuscle},
-                                                  {"averagemuscle", kAverageMuscle},
-                                                  {"maxmuscle", kMaxMuscle}}};
-constexpr std::array<NamedFactor, 3> kWeights = {{{"minweight", kMinWeight},
-                                                  {"averageweight", kAverageWeight},
-                                                  {"maxweight", kMaxWeight}}};
+constexpr std::array<NamedFactor, 3> kMuscles = {
+    {{"minmuscle", kMinMuscle}, {"averagemuscle", kAverageMuscle}, {"maxmuscle", kMaxMuscle}}};
+constexpr std::array<NamedFactor, 3> kWeights = {
+    {{"minweight", kMinWeight}, {"averageweight", kAverageWeight}, {"maxweight", kMaxWeight}}};
 constexpr std::array<NamedFactor, 2> kHeights = {
     {{"minheight", kMinHeight}, {"maxheight", kMaxHeight}}};
 constexpr std::array<NamedFactor, 2> kProportions = {
@@ -61,45 +59,70 @@ struct DetailGroup {
 
 const std::vector<DetailGroup>& detail_groups() {
     static const std::vector<DetailGroup> kGroups = {
-        {"measure/measure-", "-decr -incr", 0.2, 1.3,
-         {"ankle-circ",      "bust-circ",        "calf-circ",       "frontchest-dist",
-          "hips-circ",       "knee-circ",        "lowerarm-length", "lowerleg-height",
-          "napetowaist-dist", "neck-circ",       "neck-height",     "shoulder-dist",
-          "thigh-circ",      "underbust-circ",   "upperarm-circ",   "upperarm-length",
-          "upperleg-height", "waist-circ",       "waisttohip-dist", "wrist-circ"}},
-        {"armslegs/l-", "-decr -incr", 0.2, 1.0,
-         {"upperarm-fat",          "upperarm-muscle",      "upperarm-scale-depth",
-          "upperarm-scale-horiz",  "upperarm-scale-vert",  "upperarm-shoulder-muscle",
-          "lowerarm-fat",          "lowerarm-muscle",      "lowerarm-scale-depth",
-          "lowerarm-scale-horiz",  "lowerarm-scale-vert",  "upperleg-fat",
-          "upperleg-muscle",       "upperleg-scale-depth", "upperleg-scale-horiz",
-          "upperleg-scale-vert",   "lowerleg-fat",         "lowerleg-muscle",
-          "lowerleg-scale-depth",  "lowerleg-scale-horiz", "lowerleg-scale-vert",
-          "leg-valgus",            "foot-scale",           "foot-scale-depth",
-          "foot-scale-horiz",      "foot-scale-vert",      "hand-scale",
-          "hand-fingers-diameter", "hand-fingers-length"}},
-        {"torso/torso-", "-decr -incr", 0.2, 1.0,
-         {"muscle-dorsi", "muscle-pectoral", "scale-depth", "scale-horiz", "scale-vert",
-          "vshape"}},
-        {"torso/torso-trans-", "backward forward", 0.12, 0.5, {""}},
-        {"hip/hip-", "-decr -incr", 0.2, 1.0, {"scale-depth", "scale-horiz", "scale-vert"}},
-        {"hip/hip-trans-", "backward forward", 0.12, 0.5, {""}},
-        {"hip/hip-waist-", "down up", 0.2, 1.0, {""}},
-        {"stomach/stomach-", "-decr -incr", 0.15, 1.0, {"tone", "pregnant"}},
-        {"stomach/stomach-navel-", "in out", 0.2, 1.0, {""}},
-        {"stomach/stomach-navel-", "down up", 0.2, 1.0, {""}},
-        {"buttocks/buttocks-volume", "-decr -incr", 0.25, 1.0, {""}},
-        {"pelvis/", "-decr -incr", 0.2, 1.0, {"pelvis-tone", "bulge"}},
-        {"neck/neck-", "-decr -incr", 0.2, 1.0,
+        {"measure/measure-",
+         "-decr -incr",
+         0.1,
+         1.3,
+         {"ankle-circ",       "bust-circ",      "calf-circ",       "frontchest-dist",
+          "hips-circ",        "knee-circ",      "lowerarm-length", "lowerleg-height",
+          "napetowaist-dist", "neck-circ",      "neck-height",     "shoulder-dist",
+          "thigh-circ",       "underbust-circ", "upperarm-circ",   "upperarm-length",
+          "upperleg-height",  "waist-circ",     "waisttohip-dist", "wrist-circ"}},
+        {"armslegs/l-",
+         "-decr -incr",
+         0.1,
+         1.0,
+         {"upperarm-fat",         "upperarm-muscle",
+          "upperarm-scale-depth", "upperarm-scale-horiz",
+          "upperarm-scale-vert",  "upperarm-shoulder-muscle",
+          "lowerarm-fat",         "lowerarm-muscle",
+          "lowerarm-scale-depth", "lowerarm-scale-horiz",
+          "lowerarm-scale-vert",  "upperleg-fat",
+          "upperleg-muscle",      "upperleg-scale-depth",
+          "upperleg-scale-horiz", "upperleg-scale-vert",
+          "lowerleg-fat",         "lowerleg-muscle",
+          "lowerleg-scale-depth", "lowerleg-scale-horiz",
+          "lowerleg-scale-vert",  "leg-valgus",
+          "foot-scale",           "foot-scale-depth",
+          "foot-scale-horiz",     "foot-scale-vert",
+          "hand-scale",           "hand-fingers-diameter",
+          "hand-fingers-length"}},
+        {"torso/torso-",
+         "-decr -incr",
+         0.1,
+         1.0,
+         {"muscle-dorsi", "muscle-pectoral", "scale-depth", "scale-horiz", "scale-vert", "vshape"}},
+        {"torso/torso-trans-", "backward forward", 0.06, 0.5, {""}},
+        {"hip/hip-", "-decr -incr", 0.1, 1.0, {"scale-depth", "scale-horiz", "scale-vert"}},
+        {"hip/hip-trans-", "backward forward", 0.06, 0.5, {""}},
+        {"hip/hip-waist-", "down up", 0.1, 1.0, {""}},
+        {"stomach/stomach-", "-decr -incr", 0.1, 1.0, {"tone", "pregnant"}},
+        {"stomach/stomach-navel-", "in out", 0.1, 1.0, {""}},
+        {"stomach/stomach-navel-", "down up", 0.1, 1.0, {""}},
+        {"buttocks/buttocks-volume", "-decr -incr", 0.12, 1.0, {""}},
+        {"pelvis/", "-decr -incr", 0.1, 1.0, {"pelvis-tone", "bulge"}},
+        {"neck/neck-",
+         "-decr -incr",
+         0.1,
+         1.0,
          {"back-scale-depth", "double", "scale-depth", "scale-horiz", "scale-vert"}},
-        {"neck/neck-trans-", "backward forward", 0.15, 0.5, {""}},
-        {"head/head-", "-decr -incr", 0.2, 1.0,
+        {"neck/neck-trans-", "backward forward", 0.06, 0.5, {""}},
+        {"head/head-",
+         "-decr -incr",
+         0.1,
+         1.0,
          {"age", "back-scale-depth", "fat", "scale-depth", "scale-horiz", "scale-vert"}},
-        {"chin/chin-", "-decr -incr", 0.2, 1.0,
+        {"chin/chin-",
+         "-decr -incr",
+         0.1,
+         1.0,
          {"bones", "height", "prognathism", "prominent", "width"}},
-        {"cheek/l-cheek-", "-decr -incr", 0.2, 1.0, {"bones", "inner", "volume"}},
-        {"forehead/forehead-", "-decr -incr", 0.2, 1.0, {"nubian", "scale-vert", "temple"}},
-        {"nose/nose-", "-decr -incr", 0.2, 1.0,
+        {"cheek/l-cheek-", "-decr -incr", 0.1, 1.0, {"bones", "inner", "volume"}},
+        {"forehead/forehead-", "-decr -incr", 0.1, 1.0, {"nubian", "scale-vert", "temple"}},
+        {"nose/nose-",
+         "-decr -incr",
+         0.1,
+         1.0,
          {"scale-depth", "scale-horiz", "scale-vert", "volume", "hump"}},
     };
     return kGroups;
@@ -109,10 +132,10 @@ const std::vector<DetailGroup>& detail_groups() {
 
 ModifierSet::ModifierSet() {
     // Weight and height may leave [0, 1]: the data is linear there too, and people go further.
-    modifiers_ = {{"woman", 0.0, 1.0, 0.5, 0.0},       {"age", 0.0, 0.75, 0.15, 0.15},
-                  {"muscle", 0.0, 1.0, 0.55, 0.2},     {"weight", -0.1, 2.0, 0.6, 0.15},
-                  {"height", -0.3, 1.5, 0.5, 0.15},    {"african", 0.0, 1.0, 0.33, 0.2},
-                  {"asian", 0.0, 1.0, 0.33, 0.2},      {"proportions", -1.0, 1.0, 0.2, 0.4}};
+    modifiers_ = {{"woman", 0.0, 1.0, 0.5, 0.0},    {"age", 0.0, 0.75, 0.15, 0.15},
+                  {"muscle", 0.0, 1.0, 0.55, 0.2},  {"weight", -0.1, 2.0, 0.6, 0.15},
+                  {"height", -0.3, 1.5, 0.5, 0.15}, {"african", 0.0, 1.0, 0.33, 0.2},
+                  {"asian", 0.0, 1.0, 0.33, 0.2},   {"proportions", -1.0, 1.0, 0.2, 0.4}};
     add_products();
     for (const auto& group : detail_groups()) {
         const std::string suffixes = group.suffixes;

@@ -12,19 +12,19 @@ namespace toile::body {
 
 /// One number that shapes a body.
 struct Modifier {
-    std::string name;   ///< "muscle", "measure/measure-waist-circ"
-    double low, high;   ///< bounds that people are kept in
+    std::string name;    ///< "muscle", "measure/measure-waist-circ"
+    double low, high;    ///< bounds that people are kept in
     double mean, spread; ///< of what random people get: normal, kept to the bounds
 };
 
 /// Places of the whole-body modifiers; pairs of detail targets follow.
 enum MacroModifier : std::uint8_t {
-    kWomanModifier,       ///< 0: man, 1: woman
-    kAgeModifier,         ///< 0: 25 years, 1: 90 years
-    kMuscleModifier,      ///< 0 to 1, average 0.5; so are weight and height
+    kWomanModifier,  ///< 0: man, 1: woman
+    kAgeModifier,    ///< 0: 25 years, 1: 90 years
+    kMuscleModifier, ///< 0 to 1, average 0.5; so are weight and height
     kWeightModifier,
     kHeightModifier,
-    kAfricanModifier,     ///< shares of the three regional shapes, sum 1
+    kAfricanModifier, ///< shares of the three regional shapes, sum 1
     kAsianModifier,
     kProportionsModifier, ///< -1: uncommon, 1: ideal
     kMacroModifierCount,
@@ -67,8 +67,8 @@ class ModifierSet {
 
     [[nodiscard]] static std::vector<Factor> factors(const Eigen::VectorXd& values);
     void add_products();
-    void add_pair(const std::string& stem, const std::string& negative,
-                  const std::string& positive, double spread, double reach);
+    void add_pair(const std::string& stem, const std::string& negative, const std::string& positive,
+                  double spread, double reach);
 
     std::vector<Modifier> modifiers_;
     std::vector<std::string> targets_;

@@ -16,11 +16,11 @@ constexpr double kSolved = 0.02;                          // largest miss of a m
 constexpr int kStature = 0, kWeight = 1;
 constexpr double kUsualIndex = 25.0; // kg/m^2, of the data's average weight
 
-constexpr double kHeavyLow = 35.0, kHeavyHigh = 45.0;     // kg/m^2
-constexpr int kUnseenHeavyShare = 4;                      // one in so many
+constexpr double kHeavyLow = 35.0, kHeavyHigh = 45.0; // kg/m^2
+constexpr int kUnseenHeavyShare = 4;                  // one in so many
 
 // How far each kind of modifier gives way to the measurements, in its spread.
-constexpr double kMacroGive = 1.5, kMeasureGive = 1.5, kOtherGive = 0.5;
+constexpr double kMacroGive = 1.5, kMeasureGive = 3.0, kOtherGive = 1.0;
 
 } // namespace
 
@@ -41,7 +41,8 @@ Eigen::VectorXd PeopleMaker::random_modifiers(Sex sex, const Eigen::VectorXd& wa
     for (std::size_t i = 0; i < all.size(); ++i)
         out[static_cast<int>(i)] =
             std::clamp(all[i].mean + all[i].spread * random.normal(), all[i].low, all[i].high);
-    out[kWomanModifier] = sex == Sex::female ? 1.0 - 0.1 * random.uniform() : 0.1 * random.uniform();
+    out[kWomanModifier] =
+        sex == Sex::female ? 1.0 - 0.1 * random.uniform() : 0.1 * random.uniform();
     // Evenly over the triangle of regional shapes.
     const double a = random.uniform(), b = random.uniform();
     out[kAfricanModifier] = std::min(a, b);
@@ -92,9 +93,9 @@ Person PeopleMaker::make(Sex sex, const Eigen::VectorXd& wanted, const Eigen::Ve
     Eigen::VectorXd give(start.size()), error(n);
     for (int i = 0; i < give.size(); ++i) {
         const auto& m = all[static_cast<std::size_t>(i)];
-        const double share = i < kMacroModifierCount             ? kMacroGive
+        const double share = i < kMacroModifierCount          ? kMacroGive
                              : m.name.starts_with("measure/") ? kMeasureGive
-                                                                 : kOtherGive;
+                                                              : kOtherGive;
         give[i] = share * share * m.spread * m.spread;
     }
     give[kAgeModifier] = give[kAfricanModifier] = give[kAsianModifier] = 0.0;
@@ -125,7 +126,8 @@ Person PeopleMaker::make(Sex sex, const Eigen::VectorXd& wanted, const Eigen::Ve
         Eigen::VectorXd next;
         for (int pass = 0; pass < 4; ++pass) {
             const Eigen::VectorXd back =
-                (free.array() > 0.0).select(start - out.modifiers, Eigen::VectorXd::Zero(free.size()));
+                (free.array() > 0.0)
+                    .select(start - out.modifiers, Eigen::VectorXd::Zero(free.size()));
             const Eigen::MatrixXd GJt = free.asDiagonal() * J.transpose();
             Eigen::MatrixXd system = J * GJt;
             system.diagonal() += error.cwiseAbs2();
@@ -173,8 +175,8 @@ Population make_population(const PeopleMaker& maker, const PopulationOptions& op
             list.emplace_back();
         };
         const auto heavy = [&](std::vector<Person>& list, int count) {
-            const Eigen::MatrixXd people = heavy_people(rows, static_cast<std::size_t>(count),
-                                                        kHeavyLow, kHeavyHigh, random);
+            const Eigen::MatrixXd people =
+                heavy_people(rows, static_cast<std::size_t>(count), kHeavyLow, kHeavyHigh, random);
             for (int i = 0; i < count; ++i)
                 wish(list, people.row(i));
         };

@@ -73,14 +73,12 @@ Measured tape_girth(std::span<const Vec3f> positions, std::span<const Triangle> 
         const auto& before = cut[hull[(i + hull.size() - 1) % hull.size()]].place;
         const auto& after = cut[hull[(i + 1) % hull.size()]].place;
         out.value += (after - c.place).norm();
-        const Eigen::Vector2d g =
-            (c.place - before).normalized() + (c.place - after).normalized();
+        const Eigen::Vector2d g = (c.place - before).normalized() + (c.place - after).normalized();
         if (!g.allFinite()) continue;
         // The corner follows its edge's ends, and slides along the edge to stay in the plane.
         const Vec3f pull = static_cast<float>(g.x()) * u + static_cast<float>(g.y()) * w;
         const Vec3f edge = positions[c.to] - positions[c.from];
-        const float slide =
-            std::clamp(pull.dot(edge) / edge.dot(axis), -kSteepest, kSteepest);
+        const float slide = std::clamp(pull.dot(edge) / edge.dot(axis), -kSteepest, kSteepest);
         const Vec3f across = pull - slide * axis;
         out.slope.emplace_back(c.from, (1.0f - c.t) * across);
         out.slope.emplace_back(c.to, c.t * across);

@@ -18,8 +18,8 @@ struct Measured {
 
 /// A tape pulled tight around the cut of `triangles` by a plane (P5 fig. 9b): the perimeter of the
 /// convex hull, metres. The plane stands across the unit vector `axis` through `point`. When the
-/// body changes, the plane moves along the axis with vertex `rider`, or without one with the mean of
-/// the hull's corners; it does not tilt. Zero when the cut is empty.
+/// body changes, the plane moves along the axis with vertex `rider`, or without one with the mean
+/// of the hull's corners; it does not tilt. Zero when the cut is empty.
 [[nodiscard]] Measured tape_girth(std::span<const Vec3f> positions,
                                   std::span<const Triangle> triangles, const Vec3f& point,
                                   const Vec3f& axis, const std::uint32_t* rider = nullptr);

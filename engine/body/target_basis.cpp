@@ -93,31 +93,39 @@ TargetBasis make_target_basis(const MakeHumanData& data, const AvatarTemplate& a
     return out;
 }
 
-TemplateBody unfold(const AvatarTemplate& avatar, const Eigen::VectorXf& coordinates) {
+BodyShape unfold_offsets(const AvatarTemplate& avatar, const Eigen::VectorXf& coordinates) {
     const auto n = static_cast<int>(avatar.half);
-    TemplateBody out;
+    const auto mirrored = [](const Vec3f& p) { return Vec3f(-p.x(), p.y(), p.z()); };
+    BodyShape out;
     out.positions.resize(avatar.mesh.positions.size());
-    float floor = std::numeric_limits<float>::max();
-    for (int v = 0; v < n; ++v)
-        floor = std::min(floor, coordinates[3 * v + 1]);
-    for (int v = 0; v < n; ++v) {
-        Vec3f p = coordinates.segment<3>(3 * v);
-        p.y() -= floor;
-        const auto m = avatar.mirror_of[static_cast<std::size_t>(v)];
-        if (m != static_cast<std::uint32_t>(v)) out.positions[m] = Vec3f(-p.x(), p.y(), p.z());
-        out.positions[static_cast<std::size_t>(v)] = p;
+    for (std::size_t v = 0; v < avatar.half; ++v) {
+        const Vec3f p = coordinates.segment<3>(3 * static_cast<int>(v));
+        const auto m = avatar.mirror_of[v];
+        out.positions[v] = p;
+        if (m != v) out.positions[m] = mirrored(p);
     }
+    auto& joints = out.skeleton.rest_positions;
     for (std::size_t j = 0; j < kJointCount; ++j) {
-        Vec3f p = coordinates.segment<3>(3 * n + 3 * static_cast<int>(j));
-        p.y() -= floor;
-        const Joint other = opposite_joint(static_cast<Joint>(j));
-        if (other < static_cast<Joint>(j)) continue; // left ones stand first, and count
-        if (other == static_cast<Joint>(j)) p.x() = 0.0f;
-        out.skeleton.rest_positions[j] = p;
-        if (other != static_cast<Joint>(j))
-            out.skeleton.rest_positions[static_cast<std::size_t>(other)] =
-                Vec3f(-p.x(), p.y(), p.z());
+        const auto other = static_cast<std::size_t>(opposite_joint(static_cast<Joint>(j)));
+        if (other < j) continue; // left ones stand first, and count
+        joints[j] = coordinates.segment<3>(3 * (n + static_cast<int>(j)));
+        if (other == j)
+            joints[j].x() = 0.0f;
+        else
+            joints[other] = mirrored(joints[j]);
     }
+    return out;
+}
+
+BodyShape unfold(const AvatarTemplate& avatar, const Eigen::VectorXf& coordinates) {
+    BodyShape out = unfold_offsets(avatar, coordinates);
+    float floor = std::numeric_limits<float>::max();
+    for (const auto& p : out.positions)
+        floor = std::min(floor, p.y());
+    for (auto& p : out.positions)
+        p.y() -= floor;
+    for (auto& p : out.skeleton.rest_positions)
+        p.y() -= floor;
     return out;
 }
 

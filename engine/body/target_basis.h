@@ -3,6 +3,7 @@
 #pragma once
 
 #include "body/avatar_template.h"
+#include "body/body_shape.h"
 
 #include <Eigen/Core>
 #include <span>
@@ -10,12 +11,6 @@
 #include <vector>
 
 namespace toile::body {
-
-/// A symmetric body on the template, rest pose, lowest vertex on y = 0; metres.
-struct TemplateBody {
-    std::vector<Vec3f> positions; ///< (nv)
-    Skeleton skeleton;
-};
 
 /// Coordinates stand as x y z of each vertex of the template's first half, then of each joint.
 struct TargetBasis {
@@ -32,7 +27,11 @@ struct TargetBasis {
                                             const ShapeCarrier& carrier,
                                             std::span<const std::string> names);
 
+/// Both halves of a displacement: vertices and joints as they move.
+[[nodiscard]] BodyShape unfold_offsets(const AvatarTemplate& avatar,
+                                       const Eigen::VectorXf& coordinates);
+
 /// Both halves of `coordinates`, stood on the floor.
-[[nodiscard]] TemplateBody unfold(const AvatarTemplate& avatar, const Eigen::VectorXf& coordinates);
+[[nodiscard]] BodyShape unfold(const AvatarTemplate& avatar, const Eigen::VectorXf& coordinates);
 
 } // namespace toile::body
