@@ -39,8 +39,8 @@ BodyLevel read_level(const TableReader& tables, const std::string& name,
                      const geometry::TriangleMesh& full, const std::string& file) {
     const auto nv = static_cast<std::uint32_t>(full.positions.size());
     auto vertices = tables.integers(name + "_vertices", nv);
-    const auto corners = tables.integers(name + "_triangles",
-                                         static_cast<std::uint32_t>(vertices.size()));
+    const auto corners =
+        tables.integers(name + "_triangles", static_cast<std::uint32_t>(vertices.size()));
     if (corners.empty() || corners.size() % 3 != 0)
         throw FileError(file, "table '" + name + "_triangles' has no whole triangles");
     std::vector<Triangle> triangles;
@@ -122,8 +122,8 @@ BodyShape BodySpace::shape(std::span<const double> coefficients) const {
     for (auto& p : out.positions)
         p.y() -= floor;
     for (std::size_t j = 0; j < kJointCount; ++j) {
-        out.skeleton.rest_positions[j] = model_.skeleton.rest_positions[j] +
-                                         moved.segment<3>(3 * static_cast<int>(nv + j));
+        out.skeleton.rest_positions[j] =
+            model_.skeleton.rest_positions[j] + moved.segment<3>(3 * static_cast<int>(nv + j));
         out.skeleton.rest_positions[j].y() -= floor;
     }
     return out;

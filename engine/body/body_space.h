@@ -18,7 +18,8 @@ struct CoefficientPrior {
     Eigen::MatrixXd covariance; ///< (k x k)
 };
 
-/// A coarser surface whose vertices are vertices of the full one, and where the full one lies on it.
+/// A coarser surface whose vertices are vertices of the full one, and where the full one lies on
+/// it.
 struct BodyLevel {
     std::vector<std::uint32_t> vertices; ///< (n) full vertex of each
     std::vector<Triangle> triangles;     ///< of level vertices

@@ -16,9 +16,7 @@ constexpr int kSweeps = 12; // each shrinks what is left by the ratio of eigenva
 Eigen::VectorXd PrincipalComponents::project(const Eigen::VectorXf& row,
                                              const Eigen::SparseMatrix<float>& metric) const {
     const Eigen::VectorXf weighted = metric * (row - mean);
-    return (components.transpose() * weighted)
-        .cast<double>()
-        .cwiseQuotient(deviation.cwiseAbs2());
+    return (components.transpose() * weighted).cast<double>().cwiseQuotient(deviation.cwiseAbs2());
 }
 
 PrincipalComponents principal_components(Eigen::MatrixXf rows,

@@ -21,8 +21,7 @@ struct PrincipalComponents {
 /// `rows` (n x d), n > k; `metric` (d x d) symmetric, positive semi-definite: coordinates that it
 /// gives no weight follow along. The sign makes the largest coordinate of each component positive.
 /// Deterministic. \throw Error when there are not enough rows
-[[nodiscard]] PrincipalComponents principal_components(Eigen::MatrixXf rows,
-                                                       const Eigen::SparseMatrix<float>& metric,
-                                                       int count);
+[[nodiscard]] PrincipalComponents
+principal_components(Eigen::MatrixXf rows, const Eigen::SparseMatrix<float>& metric, int count);
 
 } // namespace toile::body

@@ -25,9 +25,9 @@ Eigen::SparseMatrix<float> shape_metric(const AvatarTemplate& avatar,
             const int w = static_cast<int>(it.row());
             const bool crosses = (v < half) != (w < half);
             for (int k = 0; k < 3; ++k)
-                entries.emplace_back(3 * fold(w) + k, 3 * fold(v) + k,
-                                     static_cast<float>(crosses && k == 0 ? -it.value()
-                                                                          : it.value()));
+                entries.emplace_back(
+                    3 * fold(w) + k, 3 * fold(v) + k,
+                    static_cast<float>(crosses && k == 0 ? -it.value() : it.value()));
         }
     const int size = 3 * half + 3 * static_cast<int>(kJointCount);
     Eigen::SparseMatrix<float> out(size, size);

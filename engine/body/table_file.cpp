@@ -118,8 +118,8 @@ std::vector<std::uint32_t> TableReader::integers(const std::string& name,
     std::memcpy(out.data(), bytes_.data() + table.offset, out.size() * sizeof(std::uint32_t));
     for (const auto value : out)
         if (value >= bound)
-            throw FileError(file_, "table '" + name + "': " + std::to_string(value) +
-                                       " is out of range");
+            throw FileError(file_,
+                            "table '" + name + "': " + std::to_string(value) + " is out of range");
     return out;
 }
 

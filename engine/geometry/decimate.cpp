@@ -23,11 +23,10 @@ using Mesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 Mesh build(const TriangleMesh& mesh) {
     Mesh out;
     for (const auto& p : mesh.positions)
-        out.add_vertex({static_cast<double>(p.x()), static_cast<double>(p.y()),
-                        static_cast<double>(p.z())});
+        out.add_vertex(
+            {static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z())});
     for (const auto& t : mesh.triangles)
-        if (!out.add_face(out.vertex_handle(t[0]), out.vertex_handle(t[1]),
-                          out.vertex_handle(t[2]))
+        if (!out.add_face(out.vertex_handle(t[0]), out.vertex_handle(t[1]), out.vertex_handle(t[2]))
                  .is_valid())
             throw Error("a mesh to be decimated is not manifold");
     out.update_normals();

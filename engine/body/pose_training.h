@@ -1,0 +1,32 @@
+// Learns what poses do to flesh: relaxes many poses of the mean body, then fits SCAPE's Q and the
+// correctives of the real-time form.
+#pragma once
+
+#include "body/corrective_skin.h"
+#include "body/flesh.h"
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+namespace toile::body {
+
+struct PoseOptions {
+    int training_poses = 220;
+    int test_poses = 24;
+    double ridge = 0.02; ///< of the features' mean square
+    std::uint64_t seed = 7;
+    FleshOptions flesh;
+    std::function<void(double)> progress = [](double) {};
+};
+
+struct TrainedPose {
+    PoseDeformation deformation;
+    Correctives correctives;
+    nlohmann::ordered_json report; ///< errors on the test poses, volumes kept
+};
+
+/// `model`: the mean body, closed. Poses are random up to the joints' limits. Equal input gives
+/// equal results. \throw Error
+[[nodiscard]] TrainedPose train_pose(const BodyModel& model, const PoseOptions& options);
+
+} // namespace toile::body
