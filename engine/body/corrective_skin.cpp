@@ -23,11 +23,7 @@ void CorrectiveSkin::pose(const Pose& pose, std::span<Vec3f> positions) const no
     const RotationVectors turns = rotation_vectors(pose);
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         const Vertex& in = vertices_[v];
-        const Vec3f& a = turns[in.pair[0]];
-        const Vec3f& b = turns[in.pair[1]];
-        Vec3f rest = in.position;
-        for (int k = 0; k < 3; ++k)
-            rest += a[k] * in.corrective.col(k) + b[k] * in.corrective.col(3 + k);
+        const Vec3f rest = in.position + in.corrective * pose_features(turns, in.near);
         positions[v] = blend(motions, in.joints, in.weights) * rest;
     }
 }

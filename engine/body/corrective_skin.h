@@ -1,14 +1,14 @@
-// The real-time form of the body: dual quaternion skinning of a rest surface that the pose corrects,
-// each vertex by its two nearest joints only.
+// The real-time form of the body: dual quaternion skinning of a rest surface that the pose
+// corrects, each vertex by its four nearest joints only.
 #pragma once
 
 #include "body/scape.h"
 
 namespace toile::body {
 
-/// Learned: displacement of each rest vertex, linear in its features; metres per radian.
+/// Learned: displacement of each rest vertex, linear in its features; metres.
 struct Correctives {
-    std::vector<JointPair> joints;                               ///< (nv)
+    std::vector<NearJoints> joints;                              ///< (nv)
     std::vector<Eigen::Matrix<float, 3, kPoseFeatures>> weights; ///< (nv)
 };
 
@@ -28,7 +28,7 @@ class CorrectiveSkin {
         Vec3f position;
         std::array<float, 4> weights;
         std::array<std::uint16_t, 4> joints;
-        JointPair pair;
+        NearJoints near;
         Eigen::Matrix<float, 3, kPoseFeatures> corrective;
     };
     BodyShape shape_;

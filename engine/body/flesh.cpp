@@ -2,6 +2,7 @@
 
 #include "body/dual_quaternion.h"
 #include "body/rotations.h"
+#include "body/scape.h"
 #include "core/error.h"
 #include "geometry/laplacian.h"
 
@@ -14,37 +15,55 @@ namespace {
 constexpr int kRotationSteps = 4;
 constexpr float kThinnest = 0.006f; // of an element, metres: skin that lies on its bone
 constexpr float kFlattest = 0.2f;   // volume against rest volume, when its own is restored
-constexpr float kLoose = 0.80f, kTight = 0.99f; // weight of a vertex's first joint
-constexpr double kLeastPull = 1e-3;             // so that nothing floats
+constexpr double kLeastPull = 1e-3; // so that nothing floats
 
 /// End of the bone that each joint moves, in the rest pose.
 Vec3f bone_end(const Skeleton& s, Joint joint) {
     switch (joint) {
-    case Joint::hips: return s.rest(Joint::spine);
-    case Joint::spine: return s.rest(Joint::chest);
-    case Joint::chest: return s.rest(Joint::upper_chest);
-    case Joint::upper_chest: return s.rest(Joint::neck);
-    case Joint::neck: return s.rest(Joint::head);
-    case Joint::head: return s.rest(joint) + Vec3f(0.0f, 0.1f, 0.02f);
-    case Joint::left_shoulder: return s.rest(Joint::left_upper_arm);
-    case Joint::right_shoulder: return s.rest(Joint::right_upper_arm);
-    case Joint::left_upper_arm: return s.rest(Joint::left_lower_arm);
-    case Joint::right_upper_arm: return s.rest(Joint::right_lower_arm);
-    case Joint::left_lower_arm: return s.rest(Joint::left_hand);
-    case Joint::right_lower_arm: return s.rest(Joint::right_hand);
-    case Joint::left_upper_leg: return s.rest(Joint::left_lower_leg);
-    case Joint::right_upper_leg: return s.rest(Joint::right_lower_leg);
-    case Joint::left_lower_leg: return s.rest(Joint::left_foot);
-    case Joint::right_lower_leg: return s.rest(Joint::right_foot);
-    case Joint::left_foot: return s.rest(Joint::left_toes);
-    case Joint::right_foot: return s.rest(Joint::right_toes);
+    case Joint::hips:
+        return s.rest(Joint::spine);
+    case Joint::spine:
+        return s.rest(Joint::chest);
+    case Joint::chest:
+        return s.rest(Joint::upper_chest);
+    case Joint::upper_chest:
+        return s.rest(Joint::neck);
+    case Joint::neck:
+        return s.rest(Joint::head);
+    case Joint::head:
+        return s.rest(joint) + Vec3f(0.0f, 0.1f, 0.02f);
+    case Joint::left_shoulder:
+        return s.rest(Joint::left_upper_arm);
+    case Joint::right_shoulder:
+        return s.rest(Joint::right_upper_arm);
+    case Joint::left_upper_arm:
+        return s.rest(Joint::left_lower_arm);
+    case Joint::right_upper_arm:
+        return s.rest(Joint::right_lower_arm);
+    case Joint::left_lower_arm:
+        return s.rest(Joint::left_hand);
+    case Joint::right_lower_arm:
+        return s.rest(Joint::right_hand);
+    case Joint::left_upper_leg:
+        return s.rest(Joint::left_lower_leg);
+    case Joint::right_upper_leg:
+        return s.rest(Joint::right_lower_leg);
+    case Joint::left_lower_leg:
+        return s.rest(Joint::left_foot);
+    case Joint::right_lower_leg:
+        return s.rest(Joint::right_foot);
+    case Joint::left_foot:
+        return s.rest(Joint::left_toes);
+    case Joint::right_foot:
+        return s.rest(Joint::right_toes);
     case Joint::left_hand:
     case Joint::right_hand: {
         const Joint elbow = *joint_parent(joint);
         return s.rest(joint) + 0.15f * (s.rest(joint) - s.rest(elbow)).normalized();
     }
     case Joint::left_toes:
-    case Joint::right_toes: return s.rest(joint) + Vec3f(0.0f, 0.0f, 0.05f);
+    case Joint::right_toes:
+        return s.rest(joint) + Vec3f(0.0f, 0.0f, 0.05f);
     }
     return s.rest(joint);
 }
@@ -63,9 +82,9 @@ std::vector<Vec3f> find_cores(const BodyModel& model, float depth) {
         Vec3f bone = Vec3f::Zero();
         for (std::size_t k = 0; k < 4; ++k) {
             const auto joint = static_cast<Joint>(model.skin.joints[v][k]);
-            bone += model.skin.weights[v][k] *
-                    nearest_on_segment(model.skeleton.rest(joint),
-                                       bone_end(model.skeleton, joint), p);
+            bone +=
+                model.skin.weights[v][k] *
+                nearest_on_segment(model.skeleton.rest(joint), bone_end(model.skeleton, joint), p);
         }
         out.push_back(p + depth * (bone - p));
     }
@@ -77,10 +96,10 @@ std::vector<Vec3f> find_cores(const BodyModel& model, float depth) {
 Quatf nearest_rotation(const Mat3f& F, Quatf guess) noexcept {
     for (int i = 0; i < kRotationSteps; ++i) {
         const Mat3f R = guess.toRotationMatrix();
-        const Vec3f turn = R.col(0).cross(F.col(0)) + R.col(1).cross(F.col(1)) +
-                           R.col(2).cross(F.col(2));
-        const float agree = std::abs(R.col(0).dot(F.col(0)) + R.col(1).dot(F.col(1)) +
-                                     R.col(2).dot(F.col(2)));
+        const Vec3f turn =
+            R.col(0).cross(F.col(0)) + R.col(1).cross(F.col(1)) + R.col(2).cross(F.col(2));
+        const float agree =
+            std::abs(R.col(0).dot(F.col(0)) + R.col(1).dot(F.col(1)) + R.col(2).dot(F.col(2)));
         const Vec3f w = turn / (agree + 1e-9f);
         guess = (from_rotation_vector(w) * guess).normalized();
         if (w.squaredNorm() < 1e-10f) break;
@@ -110,18 +129,17 @@ void Flesh::add_element(const BodyModel& model, const Triangle& t,
 }
 
 Flesh::Flesh(const BodyModel& model, const FleshOptions& options)
-    : options_(options), rest_(model.rest.positions),
-      cores_(find_cores(model, options.core_depth)), skin_(model.skin) {
+    : options_(options), rest_(model.rest.positions), cores_(find_cores(model, options.core_depth)),
+      skin_(model.skin) {
     for (const auto& t : model.rest.triangles)
         add_element(model, t, cores_);
     const auto n = static_cast<int>(rest_.size());
-    const Eigen::VectorXd area = geometry::lumped_mass(rest_, model.rest.triangles,
-                                                       geometry::MassKind::barycentric);
+    const Eigen::VectorXd area =
+        geometry::lumped_mass(rest_, model.rest.triangles, geometry::MassKind::barycentric);
     pull_.resize(n);
     for (int v = 0; v < n; ++v) {
         const auto& w = skin_.weights[static_cast<std::size_t>(v)];
-        const double held = static_cast<double>(
-            smooth_step(kLoose, kTight, *std::max_element(w.begin(), w.end())));
+        const auto held = static_cast<double>(held_by_one_bone(w));
         pull_[v] = options.bone_pull * area[v] * std::max(kLeastPull, held);
     }
     std::vector<Eigen::Triplet<double>> entries;
@@ -169,8 +187,7 @@ std::vector<Vec3f> Flesh::relax(const JointTransforms& skinning) const {
         const Vec3f normal = depth.normalized();
         const float have = (rest_middle - rest_core).dot(normal);
         core[i] = posed_core;
-        if (have < depth.norm() - 1e-6f)
-            core[i] -= rotation[i] * ((depth.norm() - have) * normal);
+        if (have < depth.norm() - 1e-6f) core[i] -= rotation[i] * ((depth.norm() - have) * normal);
     }
     Eigen::MatrixXd pulled(n, 3);
     for (int v = 0; v < n; ++v)

@@ -1,6 +1,6 @@
-// A skinned surface relaxed as flesh on bones: what poses are learned from. Each triangle of the skin
-// and a point near the bone beneath make a tetrahedron, which resists stretch and change of volume;
-// cores and skin that belongs to one bone alone move with the bones.
+// A skinned surface relaxed as flesh on bones: what poses are learned from. Each triangle of the
+// skin and a point near the bone beneath make a tetrahedron, which resists stretch and change of
+// volume; cores and skin that belongs to one bone alone move with the bones.
 #pragma once
 
 #include "body/body_model.h"
@@ -13,7 +13,8 @@ namespace toile::body {
 
 struct FleshOptions {
     int iterations = 20;
-    double shape_stiffness = 1.0;  ///< of the distance to the nearest rotation (as rigid as possible)
+    double shape_stiffness =
+        1.0; ///< of the distance to the nearest rotation (as rigid as possible)
     double volume_stiffness = 2.0; ///< of the distance to the same shape at rest volume
     double bone_pull = 250.0;      ///< 1/m, of skin that one bone alone moves, per area
     float core_depth = 0.85f;      ///< of the way from the skin to the bone
@@ -22,7 +23,8 @@ struct FleshOptions {
 /// Built once per body; `relax` is const and may run side by side.
 class Flesh {
   public:
-    /// Rest surface (closed), joints and weights of `model`. \throw Error when the system is singular
+    /// Rest surface (closed), joints and weights of `model`. \throw Error when the system is
+    /// singular
     explicit Flesh(const BodyModel& model, const FleshOptions& options = {});
 
     /// The surface at rest energy when the bones are moved by `skinning` (see

@@ -36,9 +36,12 @@ bool is_left(Joint joint) {
 /// Where the bone that a joint moves ends.
 Joint bone_end(Joint joint) {
     switch (joint) {
-    case Joint::left_upper_arm: return Joint::left_lower_arm;
-    case Joint::left_lower_arm: return Joint::left_hand;
-    default: return joint;
+    case Joint::left_upper_arm:
+        return Joint::left_lower_arm;
+    case Joint::left_lower_arm:
+        return Joint::left_hand;
+    default:
+        return joint;
     }
 }
 
@@ -102,8 +105,8 @@ Pose random_pose(const Skeleton& skeleton, Random& random) {
 
 Pose mirrored(const Pose& pose) {
     Pose out;
-    out.hips_position = Vec3f(-pose.hips_position.x(), pose.hips_position.y(),
-                              pose.hips_position.z());
+    out.hips_position =
+        Vec3f(-pose.hips_position.x(), pose.hips_position.y(), pose.hips_position.z());
     for (std::size_t j = 0; j < kJointCount; ++j) {
         const auto other = static_cast<std::size_t>(opposite_joint(static_cast<Joint>(j)));
         const Quatf& q = pose.rotations[other];

@@ -13,7 +13,6 @@
 namespace toile::body {
 namespace {
 
-using Features = Eigen::Matrix<float, kPoseFeatures, 1>;
 using FeatureSquare = Eigen::Matrix<double, kPoseFeatures, kPoseFeatures>;
 
 struct Example {
@@ -36,20 +35,22 @@ std::vector<Example> make_examples(const BodyModel& model, const Flesh& flesh, i
     return out;
 }
 
-/// (features x features) inverse of the ridge regression's matrix, for each pair in use.
-std::map<JointPair, FeatureSquare> regression_inverses(const std::vector<Example>& examples,
-                                                       const std::vector<JointPair>& pairs,
-                                                       double ridge) {
-    std::map<JointPair, FeatureSquare> out;
-    for (const auto& pair : pairs) {
-        auto [entry, is_new] = out.emplace(pair, FeatureSquare::Zero());
+/// (features x features) inverse of the ridge regression's matrix, for each group of joints in use.
+std::map<NearJoints, FeatureSquare> regression_inverses(const std::vector<Example>& examples,
+                                                        const std::vector<NearJoints>& groups,
+                                                        double ridge) {
+    std::map<NearJoints, FeatureSquare> out;
+    for (const auto& group : groups) {
+        auto [entry, is_new] = out.emplace(group, FeatureSquare::Zero());
         if (!is_new) continue;
         for (const auto& example : examples) {
-            const auto f = pose_features(rotation_vectors(example.pose), pair).cast<double>().eval();
+            const auto f =
+                pose_features(rotation_vectors(example.pose), group).cast<double>().eval();
             entry->second += f * f.transpose();
         }
-        const double mean = entry->second.trace() / kPoseFeatures;
-        entry->second.diagonal().array() += ridge * mean;
+        // Relative to each feature's own size, so that units do not matter.
+        for (int f = 0; f < kPoseFeatures; ++f)
+            entry->second(f, f) *= 1.0 + ridge;
         entry->second = entry->second.inverse().eval();
     }
     return out;
@@ -77,9 +78,9 @@ PoseDeformation fit_deformation(const BodyModel& model, const std::vector<Exampl
     std::vector<Quatf> rotations(triangles.size());
     std::vector<Vec3f> places(model.rest.positions.size());
     for (const auto& example : examples) {
-        plain.skin(skinning_transforms(model.skeleton,
-                                       forward_kinematics(model.skeleton, example.pose)),
-                   model.rest.positions, rotations, places);
+        plain.skin(
+            skinning_transforms(model.skeleton, forward_kinematics(model.skeleton, example.pose)),
+            model.rest.positions, rotations, places);
         const RotationVectors turns = rotation_vectors(example.pose);
         for (std::size_t t = 0; t < triangles.size(); ++t) {
             const Mat3f Q = rotations[t].toRotationMatrix().transpose() *
@@ -96,7 +97,7 @@ PoseDeformation fit_deformation(const BodyModel& model, const std::vector<Exampl
 }
 
 /// Vertices as degenerate triangles, so that they find their joints like triangles do.
-std::vector<JointPair> nearest_joints_of_vertices(const BodyModel& model) {
+std::vector<NearJoints> nearest_joints_of_vertices(const BodyModel& model) {
     std::vector<Triangle> points;
     for (std::uint32_t v = 0; v < model.rest.positions.size(); ++v)
         points.push_back({v, v, v});
@@ -116,8 +117,7 @@ Correctives fit_correctives(const BodyModel& model, const std::vector<Example>& 
         const RotationVectors turns = rotation_vectors(examples[e].pose);
         for (std::size_t v = 0; v < n; ++v) {
             const Vec3f unposed =
-                blend(motions, model.skin.joints[v], model.skin.weights[v]).inverse() *
-                posed[e][v];
+                blend(motions, model.skin.joints[v], model.skin.weights[v]).inverse() * posed[e][v];
             out.weights[v] += (unposed - model.rest.positions[v]) *
                               pose_features(turns, out.joints[v]).transpose();
         }
@@ -143,9 +143,9 @@ double volume_of(const BodyModel& model, std::span<const Vec3f> positions) {
 nlohmann::ordered_json test(const BodyModel& model, const TrainedPose& trained,
                             const std::vector<Example>& tests, std::size_t training_poses) {
     const std::size_t n = model.rest.positions.size();
-    const ScapeModel scape(model, trained.deformation);
+    const ScapeModel scape(model, trained.tables.deformation);
     ScapeBody body(scape, {model.rest.positions, model.skeleton});
-    const CorrectiveSkin baked(body.shape(), model.skin, trained.correctives);
+    const CorrectiveSkin baked(body.shape(), model.skin, trained.tables.correctives);
     const SkinnedSurface plain(model.rest.positions, {}, model.skin.joints, model.skin.weights);
     Eigen::VectorXd shares = geometry::lumped_mass(model.rest.positions, model.rest.triangles,
                                                    geometry::MassKind::barycentric);
@@ -155,8 +155,8 @@ nlohmann::ordered_json test(const BodyModel& model, const TrainedPose& trained,
     double relaxed_loss = 0.0, linear_loss = 0.0, scape_loss = 0.0;
     std::vector<Vec3f> by_scape(n), by_linear(n), by_dual(n), by_baked(n);
     for (const auto& example : tests) {
-        const auto skinning = skinning_transforms(
-            model.skeleton, forward_kinematics(model.skeleton, example.pose));
+        const auto skinning =
+            skinning_transforms(model.skeleton, forward_kinematics(model.skeleton, example.pose));
         body.pose(example.pose, by_scape);
         baked.pose(example.pose, by_baked);
         plain.pose(skinning, SkinningMethod::linear_blend, VectorRows(std::span(by_linear)), {});
@@ -180,8 +180,7 @@ nlohmann::ordered_json test(const BodyModel& model, const TrainedPose& trained,
     out["linear_blend_to_relaxed_mean_mm"] = mean(linear_error, 1e3);
     out["dual_quaternion_to_relaxed_mean_mm"] = mean(dual_error, 1e3);
     out["baked_to_relaxed_mean_mm"] = mean(baked_error, 1e3);
-    out["scape_share_of_linear_blend_error"] =
-        std::round(1e4 * scape_error / linear_error) / 1e4;
+    out["scape_share_of_linear_blend_error"] = std::round(1e4 * scape_error / linear_error) / 1e4;
     out["baked_to_scape_mean_mm"] = mean(apart, 1e3);
     out["volume_change_relaxed_percent"] = mean(relaxed_loss, 1e2);
     out["volume_change_scape_percent"] = mean(scape_loss, 1e2);
@@ -196,21 +195,28 @@ TrainedPose train_pose(const BodyModel& model, const PoseOptions& options) {
     const int all = options.training_poses + options.test_poses;
     int finished = 0;
     const auto done = [&] { options.progress(static_cast<double>(++finished) / all); };
-    const auto examples =
-        make_examples(model, flesh, options.training_poses, options.seed, done);
-    const auto tests = make_examples(model, flesh, options.test_poses,
-                                     options.seed + 1000000, done);
+    const auto examples = make_examples(model, flesh, options.training_poses, options.seed, done);
+    const auto tests =
+        make_examples(model, flesh, options.test_poses, options.seed + 1000000, done);
     TrainedPose out;
-    out.deformation = fit_deformation(model, examples, options.ridge);
-    const ScapeModel scape(model, out.deformation);
+    out.tables.deformation = fit_deformation(model, examples, options.ridge);
+    const ScapeModel scape(model, out.tables.deformation);
     std::vector<std::vector<Vec3f>> posed(examples.size(),
                                           std::vector<Vec3f>(model.rest.positions.size()));
     ScapeBody body(scape, {model.rest.positions, model.skeleton});
     for (std::size_t e = 0; e < examples.size(); ++e)
         body.pose(examples[e].pose, posed[e]);
-    out.correctives = fit_correctives(model, examples, posed, options.ridge);
+    out.tables.correctives = fit_correctives(model, examples, posed, options.ridge);
     out.report = test(model, out, tests, examples.size());
     return out;
+}
+
+nlohmann::ordered_json train_pose_tables(const std::filesystem::path& folder,
+                                         const PoseOptions& options) {
+    const BodyModel model = load_body_model(folder);
+    const TrainedPose trained = train_pose(model, options);
+    save_pose_tables(trained.tables, model);
+    return trained.report;
 }
 
 } // namespace toile::body

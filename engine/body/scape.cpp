@@ -14,8 +14,10 @@ namespace {
 // Against the skinned surface, 1/m^2: features longer than about 0.2 m stay in place, so that small
 // errors of Q do not add up along a limb.
 constexpr double kPull = 25.0;
-constexpr float kNear = 0.1f;         // metres; of joints that shape flesh beyond their skin
-constexpr float kNearCounts = 0.05f;  // against 0.25, half way between two joints
+constexpr double kHeldPull = 1000.0; // the same where one bone holds the skin: from 3 cm on
+constexpr float kLoose = 0.80f, kTight = 0.99f; // weight of a vertex's first joint
+constexpr float kNear = 0.1f;        // metres; of joints that shape flesh beyond their skin
+constexpr float kNearCounts = 0.05f; // against 0.25, half way between two joints
 
 /// Share of a vertex that moves with each joint or what hangs on it.
 std::array<float, kJointCount> shares_below(const SkinWeights& skin, std::size_t vertex) {
@@ -55,8 +57,9 @@ RotationVectors rotation_vectors(const Pose& pose) noexcept {
     return out;
 }
 
-std::vector<JointPair> nearest_joints(const BodyModel& model, std::span<const Triangle> triangles) {
-    std::vector<JointPair> out;
+std::vector<NearJoints> nearest_joints(const BodyModel& model,
+                                       std::span<const Triangle> triangles) {
+    std::vector<NearJoints> out;
     for (const auto& t : triangles) {
         const Vec3f middle =
             (model.rest.positions[t[0]] + model.rest.positions[t[1]] + model.rest.positions[t[2]]) /
@@ -68,17 +71,22 @@ std::vector<JointPair> nearest_joints(const BodyModel& model, std::span<const Tr
                 score[j] += below[j] * (1.0f - below[j]) / 3.0f;
         }
         for (std::size_t j = 1; j < kJointCount; ++j)
-            score[j] += kNearCounts *
-                        std::exp(-(model.skeleton.rest_positions[j] - middle).norm() / kNear);
+            score[j] +=
+                kNearCounts * std::exp(-(model.skeleton.rest_positions[j] - middle).norm() / kNear);
         score[0] = -1.0f; // the hips place the body, they do not bend it
-        const auto first = std::max_element(score.begin(), score.end());
-        const auto a = static_cast<std::uint8_t>(first - score.begin());
-        *first = -1.0f;
-        const auto b = static_cast<std::uint8_t>(std::max_element(score.begin(), score.end()) -
-                                                 score.begin());
-        out.push_back({a, b});
+        NearJoints nearest{};
+        for (auto& joint : nearest) {
+            const auto best = std::max_element(score.begin(), score.end());
+            joint = static_cast<std::uint8_t>(best - score.begin());
+            *best = -1.0f;
+        }
+        out.push_back(nearest);
     }
     return out;
+}
+
+float held_by_one_bone(const std::array<float, 4>& weights) noexcept {
+    return smooth_step(kLoose, kTight, *std::max_element(weights.begin(), weights.end()));
 }
 
 ScapeModel::ScapeModel(const BodyModel& model, PoseDeformation deformation)
@@ -101,7 +109,10 @@ ScapeModel::ScapeModel(const BodyModel& model, PoseDeformation deformation)
         corners_.push_back(c);
     }
     laplacian_ = geometry::cotangent_laplacian(rest_, triangles_);
-    pull_ = kPull * geometry::lumped_mass(rest_, triangles_, geometry::MassKind::barycentric);
+    pull_ = geometry::lumped_mass(rest_, triangles_, geometry::MassKind::barycentric);
+    for (int v = 0; v < pull_.size(); ++v)
+        pull_[v] *= kPull + kHeldPull * static_cast<double>(held_by_one_bone(
+                                            skin_.weights[static_cast<std::size_t>(v)]));
     Eigen::SparseMatrix<double> system = laplacian_;
     system += Eigen::SparseMatrix<double>(pull_.asDiagonal());
     solver_.compute(system);

@@ -3,6 +3,7 @@
 #include "body/avatar_atlas.h"
 #include "body/avatar_files.h"
 #include "body/body_space.h"
+#include "body/pose_training.h"
 #include "body/principal_components.h"
 #include "body/shape_metric.h"
 #include "body/table_file.h"
@@ -267,6 +268,9 @@ nlohmann::ordered_json train_body_space(const SpaceOptions& options) {
     space["tables"] = kTables;
     tables.write(model.folder / kTables);
     write_text(model.folder / "space.json", space.dump() + "\n");
+    PoseOptions poses;
+    poses.progress = [&](double share) { options.progress(0.7 + 0.28 * share, "relaxing poses"); };
+    report["pose"] = train_pose_tables(model.folder, poses);
     write_text(model.folder / "training.json", report.dump(2) + "\n");
     return report;
 }

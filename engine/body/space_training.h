@@ -21,7 +21,8 @@ struct SpaceOptions {
     std::function<void(double, const std::string&)> progress = [](double, const std::string&) {};
 };
 
-/// Trains and writes <out>/<id>/ (model, space.json, tables, training.json, PROVENANCE.md); equal
+/// Trains and writes <out>/<id>/ (model, space.json, space.tables, pose.tables,
+/// training.json, PROVENANCE.md); equal
 /// options and data give equal bytes. Returns what training.json holds: how the population and the
 /// space did. Takes about ten minutes on two cores. \throw Error
 nlohmann::ordered_json train_body_space(const SpaceOptions& options);
