@@ -37,8 +37,7 @@ Eigen::MatrixXf stack(const std::vector<Matrix>& matrices) {
 }
 
 template <class Matrix>
-std::vector<Matrix> unstack(const TableReader& tables, const std::string& name,
-                            std::size_t count) {
+std::vector<Matrix> unstack(const TableReader& tables, const std::string& name, std::size_t count) {
     constexpr int kSize = Matrix::SizeAtCompileTime;
     const Eigen::MatrixXf rows = tables.numbers(name, count, kSize);
     std::vector<Matrix> out(count);

@@ -12,7 +12,7 @@
 namespace toile::body {
 
 struct PoseOptions {
-    int training_poses = 220;
+    int training_poses = 280;
     int test_poses = 24;
     double ridge = 0.05; ///< of each feature's mean square
     std::uint64_t seed = 7;
