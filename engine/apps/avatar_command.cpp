@@ -1,3 +1,4 @@
+#include "apps/avatar_space_command.h"
 #include "apps/commands.h"
 #include "body/avatar_training.h"
 #include "body/body_model.h"
@@ -135,8 +136,8 @@ void add_avatar_commands(CLI::App& app, const GlobalOptions& global) {
         ->type_name("DIR");
     train_command->add_option("ids", options->ids, "Only these (woman, man, mannequin)");
     train_command->callback([options] { train(*options); });
-
     add_test_people_command(*group, global);
+    add_avatar_space_commands(*group);
 }
 
 } // namespace toile::apps

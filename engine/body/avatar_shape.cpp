@@ -66,6 +66,49 @@ const MakeHumanBone& bone_named(const MakeHumanData& data, const std::string& na
     return *found;
 }
 
+/// The forearm's turn about the elbow that leaves `kElbowBend`.
+Quatf elbow_turn(const Skeleton& skeleton, Joint upper, Joint lower, Joint hand) {
+    const Vec3f elbow = skeleton.rest(lower);
+    const Vec3f along = (elbow - skeleton.rest(upper)).normalized();
+    const Vec3f fore = (skeleton.rest(hand) - elbow).normalized();
+    const Vec3f axis = fore.cross(along);
+    const float bend = std::atan2(axis.norm(), fore.dot(along));
+    return Quatf(Eigen::AngleAxisf(bend - kElbowBend, axis.normalized()));
+}
+
+/// Share of each vertex that moves with `joint` and all below it.
+std::vector<float> moved_share(const MakeHumanData& data, Joint joint) {
+    const auto joint_of = bone_joints(data);
+    std::vector<float> out(data.positions.size(), 0.0f);
+    for (std::size_t v = 0; v < out.size(); ++v)
+        for (const auto& w : data.weights[v])
+            if (descends(joint_of[static_cast<std::size_t>(w.bone)], joint)) out[v] += w.weight;
+    return out;
+}
+
+/// Turns the forearm and all below about the elbow until `kElbowBend` is left.
+void straighten_elbow(const MakeHumanData& data, Joint upper, Joint lower, Joint hand,
+                      std::vector<Vec3f>& positions, Skeleton& skeleton) {
+    const Vec3f elbow = skeleton.rest(lower);
+    const Quatf turn = elbow_turn(skeleton, upper, lower, hand);
+    const auto share = moved_share(data, lower);
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        const Vec3f turned = elbow + turn * (positions[v] - elbow);
+        positions[v] += share[v] * (turned - positions[v]);
+    }
+    for (std::size_t j = 0; j < kJointCount; ++j)
+        if (descends(static_cast<Joint>(j), lower))
+            skeleton.rest_positions[j] = elbow + turn * (skeleton.rest_positions[j] - elbow);
+}
+
+} // namespace
+
+bool descends(Joint joint, Joint ancestor) {
+    for (std::optional<Joint> j = joint; j; j = joint_parent(*j))
+        if (*j == ancestor) return true;
+    return false;
+}
+
 /// The joint heads in the data's own pose; toes: the ball of the foot, between toes 1 and 3.
 Skeleton read_joints(const MakeHumanData& data, const std::vector<Vec3f>& positions) {
     Skeleton out;
@@ -80,37 +123,11 @@ Skeleton read_joints(const MakeHumanData& data, const std::vector<Vec3f>& positi
     return out;
 }
 
-bool descends(Joint joint, Joint ancestor) {
-    for (std::optional<Joint> j = joint; j; j = joint_parent(*j))
-        if (*j == ancestor) return true;
-    return false;
+ElbowTurn left_elbow_turn(const MakeHumanData& data, const std::vector<Vec3f>& positions) {
+    return {elbow_turn(read_joints(data, positions), Joint::left_upper_arm, Joint::left_lower_arm,
+                       Joint::left_hand),
+            bone_named(data, "lowerarm01.L").head, moved_share(data, Joint::left_lower_arm)};
 }
-
-/// Turns the forearm and all below about the elbow until `kElbowBend` is left.
-void straighten_elbow(const MakeHumanData& data, const std::vector<Joint>& joint_of, Joint upper,
-                      Joint lower, Joint hand, std::vector<Vec3f>& positions, Skeleton& skeleton) {
-    const Vec3f elbow = skeleton.rest(lower);
-    const Vec3f along = (elbow - skeleton.rest(upper)).normalized();
-    const Vec3f fore = (skeleton.rest(hand) - elbow).normalized();
-    const Vec3f axis = fore.cross(along);
-    const float bend = std::atan2(axis.norm(), fore.dot(along));
-    const Quatf turn(Eigen::AngleAxisf(bend - kElbowBend, axis.normalized()));
-    std::vector<bool> moves(data.bones.size());
-    for (std::size_t b = 0; b < moves.size(); ++b)
-        moves[b] = descends(joint_of[b], lower);
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-        float share = 0.0f;
-        for (const auto& w : data.weights[v])
-            if (moves[static_cast<std::size_t>(w.bone)]) share += w.weight;
-        const Vec3f turned = elbow + turn * (positions[v] - elbow);
-        positions[v] += share * (turned - positions[v]);
-    }
-    for (std::size_t j = 0; j < kJointCount; ++j)
-        if (descends(static_cast<Joint>(j), lower))
-            skeleton.rest_positions[j] = elbow + turn * (skeleton.rest_positions[j] - elbow);
-}
-
-} // namespace
 
 ShapeRecipe adult_recipe(double woman) {
     ShapeRecipe out;
@@ -147,11 +164,10 @@ BaseShape make_base_shape(const MakeHumanData& data, const ShapeRecipe& recipe, 
     for (auto& p : out.positions)
         p *= kMetresPerUnit * static_cast<float>(scale);
     out.skeleton = read_joints(data, out.positions);
-    const auto joint_of = bone_joints(data);
-    straighten_elbow(data, joint_of, Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_hand,
+    straighten_elbow(data, Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_hand,
                      out.positions, out.skeleton);
-    straighten_elbow(data, joint_of, Joint::right_upper_arm, Joint::right_lower_arm,
-                     Joint::right_hand, out.positions, out.skeleton);
+    straighten_elbow(data, Joint::right_upper_arm, Joint::right_lower_arm, Joint::right_hand,
+                     out.positions, out.skeleton);
 
     float floor = std::numeric_limits<float>::max();
     for (std::size_t v = 0; v < kBodyVertices; ++v)

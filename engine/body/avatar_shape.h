@@ -28,6 +28,24 @@ struct BaseShape {
 [[nodiscard]] BaseShape make_base_shape(const MakeHumanData& data, const ShapeRecipe& recipe,
                                         double scale = 1.0);
 
+/// How a shape's left forearm is laid into our rest pose: its share of each vertex turns about the
+/// elbow. Linear in the shape as long as the turn stays the same.
+struct ElbowTurn {
+    Quatf turn;
+    std::vector<std::uint32_t> elbow; ///< vertices whose mean is the joint
+    std::vector<float> share;         ///< (19158) of each vertex, [0, 1]
+};
+
+/// The turn of one shape, decimetres or metres, in the data's own pose.
+[[nodiscard]] ElbowTurn left_elbow_turn(const MakeHumanData& data,
+                                        const std::vector<Vec3f>& positions);
+
+/// Joints of a shape in the data's own pose, in its unit; linear in the positions.
+[[nodiscard]] Skeleton read_joints(const MakeHumanData& data, const std::vector<Vec3f>& positions);
+
+/// Does `joint` move with `ancestor` (or is it the same)?
+[[nodiscard]] bool descends(Joint joint, Joint ancestor);
+
 /// Our joint that each bone of the rig moves with. (bones)
 [[nodiscard]] std::vector<Joint> bone_joints(const MakeHumanData& data);
 

@@ -80,11 +80,15 @@ std::vector<SurfacePoint> bind(const geometry::TriangleMesh& mesh, std::size_t h
 
 } // namespace
 
-AvatarTemplate make_avatar_template(const MakeHumanData& data) {
+BaseShape template_shape(const MakeHumanData& data) {
     ShapeRecipe recipe = adult_recipe(0.5);
     for (const char* target : kSpreadFingers)
         recipe[target] = kFingerSpread;
-    const BaseShape shape = make_base_shape(data, recipe);
+    return make_base_shape(data, recipe);
+}
+
+AvatarTemplate make_avatar_template(const MakeHumanData& data) {
+    const BaseShape shape = template_shape(data);
     AvatarTemplate out;
     out.skeleton = shape.skeleton;
     std::vector<Quad> quads = data.body;
@@ -165,31 +169,44 @@ ShapeCarrier::ShapeCarrier(const AvatarTemplate& avatar, std::span<const float> 
     }
 }
 
-std::vector<Vec3f> ShapeCarrier::carry(const BaseShape& shape) const {
-    const auto refined = geometry::refine(avatar_.refinement, shape.positions);
+Eigen::MatrixXd ShapeCarrier::follow(std::span<const Vec3f> refined_offsets) const {
     const auto n = static_cast<int>(avatar_.half);
     Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(n, 3);
     for (int v = 0; v < n; ++v) {
         const auto& point = avatar_.points[static_cast<std::size_t>(v)];
         Vec3f d = Vec3f::Zero();
-        for (int k = 0; k < 3; ++k) {
-            const auto c = point.corners[static_cast<std::size_t>(k)];
-            d += point.barycentric[k] * (refined[c] - avatar_.base[c]);
-        }
+        for (int k = 0; k < 3; ++k)
+            d += point.barycentric[k] * refined_offsets[point.corners[static_cast<std::size_t>(k)]];
         displacement.row(v) = follow_[v] * d.cast<double>();
     }
     for (int k = 0; k < 3; ++k)
         displacement.col(k) = (k == 0 ? odd_ : even_).solve(displacement.col(k).eval()).eval();
+    for (std::size_t v = 0; v < avatar_.half; ++v)
+        if (avatar_.mirror_of[v] == v) displacement(static_cast<int>(v), 0) = 0.0;
+    return displacement;
+}
+
+Eigen::MatrixXd ShapeCarrier::carry_offsets(std::span<const Vec3f> offsets) const {
+    return follow(geometry::refine(avatar_.refinement, offsets));
+}
+
+std::vector<Vec3f> ShapeCarrier::carry(const BaseShape& shape) const {
+    auto refined = geometry::refine(avatar_.refinement, shape.positions);
+    for (std::size_t v = 0; v < refined.size(); ++v)
+        refined[v] -= avatar_.base[v];
+    const Eigen::MatrixXd displacement = follow(refined);
 
     std::vector<Vec3f> out(avatar_.mesh.positions.size());
     float floor = std::numeric_limits<float>::max();
-    for (int v = 0; v < n; ++v) {
-        const auto i = static_cast<std::size_t>(v);
-        const auto m = avatar_.mirror_of[i];
-        Vec3f p = avatar_.mesh.positions[i] + Vec3f(displacement.row(v).cast<float>().transpose());
-        if (m == i) p.x() = 0.0f;
-        out[i] = p;
-        if (m != i) out[m] = Vec3f(-p.x(), p.y(), p.z());
+    for (std::size_t v = 0; v < avatar_.half; ++v) {
+        const Vec3f p = avatar_.mesh.positions[v] +
+                        Vec3f(displacement.row(static_cast<int>(v)).cast<float>().transpose());
+        const auto m = avatar_.mirror_of[v];
+        out[v] = p;
+        if (m == v)
+            out[v].x() = 0.0f;
+        else
+            out[m] = Vec3f(-p.x(), p.y(), p.z());
         floor = std::min(floor, p.y());
     }
     for (auto& p : out)

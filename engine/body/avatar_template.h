@@ -28,7 +28,10 @@ struct AvatarTemplate {
     std::vector<Vec3f> base;              ///< refined base surface of that shape
 };
 
-/// Builds the template from the shape between woman and man. Takes about a minute.
+/// The shape that the template is made from: between woman and man, fingers spread.
+[[nodiscard]] BaseShape template_shape(const MakeHumanData& data);
+
+/// Builds the template from that shape. Takes about a minute.
 [[nodiscard]] AvatarTemplate make_avatar_template(const MakeHumanData& data);
 
 /// Carries shapes of the base mesh onto the template; made once, used for many shapes.
@@ -41,7 +44,14 @@ class ShapeCarrier {
     /// The template's vertices in that shape, symmetric, lowest on y = 0. (nv)
     [[nodiscard]] std::vector<Vec3f> carry(const BaseShape& shape) const;
 
+    /// The linear part of it: what displacements of the base mesh (19158), metres, do to the
+    /// template's first half. (half x 3)
+    [[nodiscard]] Eigen::MatrixXd carry_offsets(std::span<const Vec3f> offsets) const;
+
   private:
+    /// Template displacements that follow those of the refined base surface.
+    [[nodiscard]] Eigen::MatrixXd follow(std::span<const Vec3f> refined_offsets) const;
+
     using Solver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 
     const AvatarTemplate& avatar_;

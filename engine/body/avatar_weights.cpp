@@ -12,19 +12,10 @@ constexpr std::size_t kInfluences = 4;
 using JointRow = std::array<float, kJointCount>;
 
 /// left <-> right; joints of the middle are their own.
-Joint opposite(Joint joint) {
-    std::string name(joint_name(joint));
-    if (name.starts_with("left"))
-        name.replace(0, 4, "right");
-    else if (name.starts_with("right"))
-        name.replace(0, 5, "left");
-    return *joint_from_name(name);
-}
-
 JointRow mirrored(const JointRow& row) {
     JointRow out{};
     for (std::size_t j = 0; j < kJointCount; ++j)
-        out[static_cast<std::size_t>(opposite(static_cast<Joint>(j)))] = row[j];
+        out[static_cast<std::size_t>(opposite_joint(static_cast<Joint>(j)))] = row[j];
     return out;
 }
 
@@ -145,10 +136,9 @@ SkinWeights make_skin_weights(const AvatarTemplate& avatar, const MakeHumanData&
         if (m == v) continue;
         out.weights[m] = out.weights[v];
         for (std::size_t k = 0; k < kInfluences; ++k)
-            out.joints[m][k] =
-                out.weights[v][k] > 0.0f
-                    ? static_cast<std::uint16_t>(opposite(static_cast<Joint>(out.joints[v][k])))
-                    : std::uint16_t{0};
+            out.joints[m][k] = out.weights[v][k] > 0.0f ? static_cast<std::uint16_t>(opposite_joint(
+                                                              static_cast<Joint>(out.joints[v][k])))
+                                                        : std::uint16_t{0};
     }
     return out;
 }
@@ -169,7 +159,7 @@ Skeleton symmetric(const Skeleton& skeleton) {
     Skeleton out;
     for (std::size_t j = 0; j < kJointCount; ++j) {
         const Vec3f p = skeleton.rest_positions[j];
-        const Vec3f q = skeleton.rest(opposite(static_cast<Joint>(j)));
+        const Vec3f q = skeleton.rest(opposite_joint(static_cast<Joint>(j)));
         out.rest_positions[j] = 0.5f * (p + Vec3f(-q.x(), q.y(), q.z()));
     }
     return out;

@@ -42,6 +42,15 @@ std::optional<Joint> joint_parent(Joint joint) {
     return static_cast<Joint>(parent);
 }
 
+Joint opposite_joint(Joint joint) {
+    std::string name(joint_name(joint));
+    if (name.starts_with("left"))
+        name.replace(0, 4, "right");
+    else if (name.starts_with("right"))
+        name.replace(0, 5, "left");
+    return *joint_from_name(name);
+}
+
 Vec3f Skeleton::offset(Joint joint) const {
     const std::uint8_t parent = kParents[static_cast<std::size_t>(joint)];
     if (parent == kNoParent) return rest(joint);

