@@ -80,11 +80,15 @@ std::vector<SurfacePoint> bind(const geometry::TriangleMesh& mesh, std::size_t h
 
 } // namespace
 
-AvatarTemplate make_avatar_template(const MakeHumanData& data) {
-    ShapeRecipe recipe = adult_recipe(0.5);
+ShapeRecipe template_recipe() {
+    ShapeRecipe out = adult_recipe(0.5);
     for (const char* target : kSpreadFingers)
-        recipe[target] = kFingerSpread;
-    const BaseShape shape = make_base_shape(data, recipe);
+        out[target] = kFingerSpread;
+    return out;
+}
+
+AvatarTemplate make_avatar_template(const MakeHumanData& data) {
+    const BaseShape shape = make_base_shape(data, template_recipe());
     AvatarTemplate out;
     out.skeleton = shape.skeleton;
     std::vector<Quad> quads = data.body;
