@@ -131,6 +131,12 @@ void add_avatar_commands(CLI::App& app, const GlobalOptions& global) {
         ->required()
         ->check(CLI::ExistingDirectory)
         ->type_name("DIR");
+    train_command
+        ->add_option("--check", options->check,
+                     "The other of the two; PROVENANCE.md then tells where their values "
+                     "differ")
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR");
     train_command->add_option("--out", options->out, "Gets one folder per avatar")
         ->required()
         ->type_name("DIR");

@@ -80,11 +80,15 @@ std::vector<SurfacePoint> bind(const geometry::TriangleMesh& mesh, std::size_t h
 
 } // namespace
 
-BaseShape template_shape(const MakeHumanData& data) {
-    ShapeRecipe recipe = adult_recipe(0.5);
+ShapeRecipe template_recipe() {
+    ShapeRecipe out = adult_recipe(0.5);
     for (const char* target : kSpreadFingers)
-        recipe[target] = kFingerSpread;
-    return make_base_shape(data, recipe);
+        out[target] = kFingerSpread;
+    return out;
+}
+
+BaseShape template_shape(const MakeHumanData& data) {
+    return make_base_shape(data, template_recipe());
 }
 
 AvatarTemplate make_avatar_template(const MakeHumanData& data) {

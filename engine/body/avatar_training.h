@@ -25,6 +25,7 @@ struct AvatarSpec {
 
 struct TrainingOptions {
     std::filesystem::path data;   ///< see MakeHumanData
+    std::filesystem::path check;  ///< the other layout of the data, to hold it against; or empty
     std::filesystem::path out;    ///< gets one folder per avatar
     std::vector<std::string> ids; ///< empty: all
     std::function<void(double, const std::string&)> progress = [](double, const std::string&) {};

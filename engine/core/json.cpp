@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 namespace toile {
 namespace {
@@ -131,8 +132,11 @@ std::int64_t JsonObject::integer(const std::string& key, std::int64_t minimum,
                                  std::int64_t maximum) {
     const auto& value = require(key);
     if (!value.is_number_integer()) throw error(key, "must be a whole number");
-    const double approximate = value.get<double>();
-    if (approximate < static_cast<double>(minimum) || approximate > static_cast<double>(maximum))
+    const auto within = [&](auto number) {
+        return std::cmp_greater_equal(number, minimum) && std::cmp_less_equal(number, maximum);
+    };
+    if (value.is_number_unsigned() ? !within(value.get<std::uint64_t>())
+                                   : !within(value.get<std::int64_t>()))
         throw error(key, "must lie between " + std::to_string(minimum) + " and " +
                              std::to_string(maximum));
     return value.get<std::int64_t>();

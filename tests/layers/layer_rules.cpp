@@ -56,7 +56,7 @@ const std::vector<Library> kLibraries = {
     {"nanoflann", "^nanoflann.*", "^nanoflann::.*", {"geometry"}, true},
     {"Spectra", "^Spectra/.*", "^Spectra::.*", {"geometry"}, true},
     {"libpng", "^png\\.h$", "^PNG::.*", {"imaging"}, true},
-    {"TurboJPEG", "^turbojpeg\\.h$", "^libjpeg-turbo::.*", {"imaging"}, true},
+    {"TurboJPEG", "^turbojpeg\\.h$", "^PkgConfig::TURBOJPEG$", {"imaging"}, true},
     {"tinygltf", "^tiny_gltf\\.h$", "^TinyGLTF::.*", {"assets"}, false},
     {"assimp", "^assimp/.*", "^assimp::.*", {"assets"}, false},
     {"libzip", "^zip\\.h$", "^PkgConfig::LIBZIP$", {"assets"}, false},
