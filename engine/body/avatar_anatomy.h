@@ -1,4 +1,4 @@
-// What a template vertex belongs to: joints, body part, named points; and the body's measurements.
+// What a template vertex belongs to: joints, body part, landmarks.
 #pragma once
 
 #include "body/avatar_template.h"
@@ -17,16 +17,8 @@ namespace toile::body {
 /// Joint positions made symmetric.
 [[nodiscard]] Skeleton symmetric(const Skeleton& skeleton);
 
-/// Vertices of named points on one shape: see docs/avatars.md.
-[[nodiscard]] std::map<std::string, std::uint32_t> find_landmarks(const AvatarTemplate& avatar,
-                                                                  std::span<const Vec3f> positions,
-                                                                  const Skeleton& skeleton,
-                                                                  std::span<const Part> parts);
-
-/// Tape measurements (convex girths) by ISO 8559-1 names, metres: see docs/avatars.md.
-[[nodiscard]] std::map<std::string, double>
-measure_avatar(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
-               const Skeleton& skeleton, std::span<const Part> parts,
-               const std::map<std::string, std::uint32_t>& landmarks);
+/// Template vertices of the landmarks (body/landmarks.h) by name, the same for every shape: those
+/// nearest to fixed vertices of the base mesh.
+[[nodiscard]] std::map<std::string, std::uint32_t> find_landmarks(const AvatarTemplate& avatar);
 
 } // namespace toile::body

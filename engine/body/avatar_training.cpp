@@ -3,6 +3,7 @@
 #include "body/avatar_atlas.h"
 #include "body/avatar_files.h"
 #include "body/avatar_provenance.h"
+#include "body/measurer.h"
 #include "core/error.h"
 #include "geometry/atlas.h"
 
@@ -36,16 +37,33 @@ struct Workshop {
     const MakeHumanData& data;
     const AvatarTemplate& avatar;
     const ShapeCarrier& carrier;
-    SkinWeights skin;
-    std::vector<Part> parts;
+    BodyModel common;  ///< topology, weights, parts and landmarks
+    Measurer measurer; ///< of bodies like it
 };
+
+/// The template as a body model, in the shape it was made from.
+BodyModel make_common(const AvatarTemplate& avatar, const MakeHumanData& data) {
+    BodyModel out;
+    out.id = "template";
+    out.rest = avatar.mesh;
+    out.skeleton = symmetric(avatar.skeleton);
+    out.skin = make_skin_weights(avatar, data);
+    out.parts = make_part_labels(out.skin);
+    out.landmarks = find_landmarks(avatar);
+    return out;
+}
 
 /// A body while it is fitted.
 struct Draft {
     std::vector<Vec3f> positions;
     Skeleton skeleton;
-    std::map<std::string, std::uint32_t> landmarks;
-    std::map<std::string, double> measurements;
+    Measurements measurements;
+
+    [[nodiscard]] double measured(std::string_view name) const {
+        for (const Measurement& m : measurements)
+            if (m.name == name) return m.value_m;
+        throw Error("avatars are not fitted to " + std::string(name));
+    }
 };
 
 Draft make_draft(const Workshop& shop, double woman, const Amounts& amounts, double scale) {
@@ -58,9 +76,7 @@ Draft make_draft(const Workshop& shop, double woman, const Amounts& amounts, dou
     Draft out;
     out.positions = shop.carrier.carry(shape);
     out.skeleton = symmetric(shape.skeleton);
-    out.landmarks = find_landmarks(shop.avatar, out.positions, out.skeleton, shop.parts);
-    out.measurements = measure_avatar(out.positions, shop.avatar.mesh.triangles, out.skeleton,
-                                      shop.parts, out.landmarks);
+    out.measurements = shop.measurer.measure(out.positions, out.skeleton);
     return out;
 }
 
@@ -71,18 +87,17 @@ Draft fit(const Workshop& shop, const AvatarSpec& spec) {
     double scale = 1.0;
     Draft draft = make_draft(shop, spec.woman, amounts, scale);
     for (int round = 0; round < kFitRounds; ++round) {
-        scale *= spec.wanted.at("stature") / draft.measurements.at("stature");
+        scale *= spec.wanted.at("stature") / draft.measured("stature");
         draft = make_draft(shop, spec.woman, amounts, scale);
         for (std::size_t i = 0; i < kSliders.size(); ++i) {
             const auto wanted = spec.wanted.find(kSliders[i].measurement);
             if (wanted == spec.wanted.end()) continue;
-            const double missing = wanted->second - draft.measurements.at(wanted->first);
+            const double missing = wanted->second - draft.measured(wanted->first);
             if (std::abs(missing) < 0.0005) continue;
             Amounts tried = amounts;
             tried[i] += std::copysign(step[i], missing);
-            const double gain =
-                make_draft(shop, spec.woman, tried, scale).measurements.at(wanted->first) -
-                draft.measurements.at(wanted->first);
+            const double gain = make_draft(shop, spec.woman, tried, scale).measured(wanted->first) -
+                                draft.measured(wanted->first);
             if (std::abs(gain) < 1e-5) continue;
             amounts[i] += (tried[i] - amounts[i]) * missing / gain;
             amounts[i] = std::clamp(amounts[i], -kLargestAmount, kLargestAmount);
@@ -114,27 +129,30 @@ std::optional<DataCheck> check_of(const TrainingOptions& options, const MakeHuma
 
 std::vector<AvatarSpec> stock_avatars() {
     std::vector<AvatarSpec> out(3);
-    out[0] = {"woman",
-              "Woman",
-              1.0,
-              {{"stature", 1.68}, {"bust_girth", 0.90}, {"waist_girth", 0.72}, {"hip_girth", 0.98}},
-              0.0f,
-              {196, 178, 164},
-              {128, 116, 112}};
-    out[1] = {"man",
-              "Man",
-              0.0,
-              {{"stature", 1.78}, {"bust_girth", 0.99}, {"waist_girth", 0.83}, {"hip_girth", 0.98}},
-              0.0f,
-              {178, 162, 148},
-              {104, 104, 110}};
-    out[2] = {"mannequin",
-              "Mannequin",
-              0.5,
-              {{"stature", 1.74}, {"bust_girth", 0.93}, {"waist_girth", 0.76}, {"hip_girth", 0.96}},
-              8.0f,
-              {208, 203, 196},
-              {150, 148, 145}};
+    out[0] = {
+        "woman",
+        "Woman",
+        1.0,
+        {{"stature", 1.68}, {"bust_girth", 0.90}, {"waist_girth", 0.72}, {"hip_girth", 0.944}},
+        0.0f,
+        {196, 178, 164},
+        {128, 116, 112}};
+    out[1] = {
+        "man",
+        "Man",
+        0.0,
+        {{"stature", 1.78}, {"bust_girth", 0.99}, {"waist_girth", 0.83}, {"hip_girth", 0.944}},
+        0.0f,
+        {178, 162, 148},
+        {104, 104, 110}};
+    out[2] = {
+        "mannequin",
+        "Mannequin",
+        0.5,
+        {{"stature", 1.74}, {"bust_girth", 0.93}, {"waist_girth", 0.76}, {"hip_girth", 0.923}},
+        8.0f,
+        {208, 203, 196},
+        {150, 148, 145}};
     return out;
 }
 
@@ -146,10 +164,10 @@ std::vector<BodyModel> train_avatars(const TrainingOptions& options) {
     options.progress(0.6, "carrying weights and shapes");
     const std::vector<float> smoothness(avatar.half, 0.0f);
     const ShapeCarrier carrier(avatar, smoothness);
-    Workshop shop{data, avatar, carrier, make_skin_weights(avatar, data), {}};
-    shop.parts = make_part_labels(shop.skin);
-    const auto layout = geometry::make_atlas(avatar.mesh.positions, avatar.mesh.triangles,
-                                             make_charts(avatar, shop.skin), {kTexels, kChartGap});
+    BodyModel common = make_common(avatar, data);
+    const Workshop shop{data, avatar, carrier, common, Measurer(common)};
+    common.layout = geometry::make_atlas(avatar.mesh.positions, avatar.mesh.triangles,
+                                         make_charts(avatar, common.skin), {kTexels, kChartGap});
 
     std::vector<BodyModel> out;
     for (const auto& spec : stock_avatars()) {
@@ -158,22 +176,17 @@ std::vector<BodyModel> train_avatars(const TrainingOptions& options) {
             continue;
         options.progress(0.7, "fitting " + spec.id);
         const Draft draft = fit(shop, spec);
-        BodyModel model;
+        BodyModel model = common;
         model.id = spec.id;
         model.version = kAvatarVersion;
         model.name = spec.name;
         model.folder = options.out / spec.id;
         model.rest.positions = draft.positions;
-        model.rest.triangles = avatar.mesh.triangles;
-        model.rest.normals.resize(draft.positions.size());
         geometry::vertex_normals(model.rest.positions, model.rest.triangles, model.rest.normals);
-        model.layout = layout;
         model.skeleton = draft.skeleton;
-        model.skin = shop.skin;
-        model.parts = shop.parts;
-        model.landmarks = draft.landmarks;
-        model.measurements = draft.measurements;
-        save_body_model(model, paint_base_layer(avatar, layout, {spec.skin, spec.layer}, kTexels),
+        model.measurements = as_map(draft.measurements);
+        save_body_model(model,
+                        paint_base_layer(avatar, model.layout, {spec.skin, spec.layer}, kTexels),
                         provenance_text(spec.id, spec.name, data, check), model.folder);
         out.push_back(std::move(model));
     }

@@ -144,12 +144,13 @@ std::vector<Loop> slice(std::span<const Vec3f> positions, std::span<const Triang
     return Slicer(positions, triangles, plane).run();
 }
 
-double hull_girth(std::span<const Vec3f> points, const Plane& plane) {
-    // Coordinates in the plane.
+std::vector<Vec3f> hull_polygon(std::span<const Vec3f> points, const Plane& plane) {
+    // Coordinates in the plane; (u, v, normal) is right-handed.
     const Vec3d n = plane.normal.cast<double>();
     const Vec3d u = n.unitOrthogonal();
     const Vec3d v = n.cross(u);
     std::vector<Eigen::Vector2d> flat;
+    flat.reserve(points.size());
     for (const Vec3f& p : points)
         flat.emplace_back(u.dot(p.cast<double>()), v.dot(p.cast<double>()));
     const auto less = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -157,7 +158,6 @@ double hull_girth(std::span<const Vec3f> points, const Plane& plane) {
     };
     std::sort(flat.begin(), flat.end(), less);
     flat.erase(std::unique(flat.begin(), flat.end()), flat.end());
-    if (flat.size() < 2) return 0.0;
 
     // Andrew's monotone chain.
     std::vector<Eigen::Vector2d> hull;
@@ -168,13 +168,22 @@ double hull_girth(std::span<const Vec3f> points, const Plane& plane) {
     };
     for (const Eigen::Vector2d& p : flat)
         add(p, 0);
-    const std::size_t lower = hull.size() - 1;
-    for (auto it = flat.rbegin() + 1; it != flat.rend(); ++it)
-        add(*it, lower);
-    double girth = 0.0;
-    for (std::size_t i = 0; i + 1 < hull.size(); ++i)
-        girth += (hull[i + 1] - hull[i]).norm();
-    return girth;
+    if (flat.size() > 1) {
+        const std::size_t lower = hull.size() - 1;
+        for (auto it = flat.rbegin() + 1; it != flat.rend(); ++it)
+            add(*it, lower);
+        hull.pop_back(); // the first point again
+    }
+    std::vector<Vec3f> out;
+    out.reserve(hull.size());
+    for (const Eigen::Vector2d& p : hull)
+        out.emplace_back(
+            (p.x() * u + p.y() * v + static_cast<double>(plane.offset) * n).cast<float>());
+    return out;
+}
+
+double hull_girth(std::span<const Vec3f> points, const Plane& plane) {
+    return Loop{hull_polygon(points, plane), true}.length();
 }
 
 } // namespace toile::geometry

@@ -35,6 +35,9 @@ struct Loop {
 [[nodiscard]] std::vector<Loop> slice(std::span<const Vec3f> positions,
                                       std::span<const Triangle> triangles, const Plane& plane);
 
+/// Convex hull of the points' feet on the plane, counter-clockwise seen against its normal; m.
+[[nodiscard]] std::vector<Vec3f> hull_polygon(std::span<const Vec3f> points, const Plane& plane);
+
 /// Length of a tape pulled tight around the points: the perimeter of their convex hull in the
 /// plane (P5, figure 9b); m. Twice the length for points in a line.
 [[nodiscard]] double hull_girth(std::span<const Vec3f> points, const Plane& plane);
