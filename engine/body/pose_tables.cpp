@@ -6,23 +6,34 @@
 namespace toile::body {
 namespace {
 
-constexpr const char* kFile = "pose.tables";
+constexpr const char* kScapeFile = "scape.tables";
+constexpr const char* kBakedFile = "baked.tables";
+constexpr std::uint32_t kAnyWord = 0xffffffffu;
 
-std::vector<std::uint32_t> flatten(const std::vector<NearJoints>& joints) {
+/// Four joints in a word, the nearest in its lowest byte.
+std::vector<std::uint32_t> pack(const std::vector<NearJoints>& joints) {
     std::vector<std::uint32_t> out;
-    for (const auto& group : joints)
-        out.insert(out.end(), group.begin(), group.end());
+    for (const auto& group : joints) {
+        std::uint32_t word = 0;
+        for (std::size_t i = 0; i < kNearJoints; ++i)
+            word |= static_cast<std::uint32_t>(group[i]) << (8 * i);
+        out.push_back(word);
+    }
     return out;
 }
 
-std::vector<NearJoints> joints_of(const TableReader& tables, const std::string& name,
-                                  std::size_t count, const std::string& file) {
-    const auto flat = tables.integers(name, static_cast<std::uint32_t>(kJointCount));
-    if (flat.size() != count * kNearJoints)
-        throw FileError(file, "table '" + name + "' does not fit the model beside it");
+std::vector<NearJoints> unpack(const TableReader& tables, std::size_t count,
+                               const std::string& file) {
+    const auto words = tables.integers("joints", kAnyWord);
+    if (words.size() != count)
+        throw FileError(file, "table 'joints' does not fit the model beside it");
     std::vector<NearJoints> out(count);
-    for (std::size_t i = 0; i < flat.size(); ++i)
-        out[i / kNearJoints][i % kNearJoints] = static_cast<std::uint8_t>(flat[i]);
+    for (std::size_t w = 0; w < count; ++w)
+        for (std::size_t i = 0; i < kNearJoints; ++i) {
+            out[w][i] = static_cast<std::uint8_t>(words[w] >> (8 * i));
+            if (out[w][i] >= kJointCount)
+                throw FileError(file, "table 'joints' names a joint that does not exist");
+        }
     return out;
 }
 
@@ -37,9 +48,9 @@ Eigen::MatrixXf stack(const std::vector<Matrix>& matrices) {
 }
 
 template <class Matrix>
-std::vector<Matrix> unstack(const TableReader& tables, const std::string& name, std::size_t count) {
+std::vector<Matrix> unstack(const TableReader& tables, std::size_t count) {
     constexpr int kSize = Matrix::SizeAtCompileTime;
-    const Eigen::MatrixXf rows = tables.numbers(name, count, kSize);
+    const Eigen::MatrixXf rows = tables.numbers("weights", count, kSize);
     std::vector<Matrix> out(count);
     for (std::size_t i = 0; i < count; ++i)
         Eigen::Map<Eigen::RowVectorXf>(out[i].data(), kSize) = rows.row(static_cast<int>(i));
@@ -49,25 +60,25 @@ std::vector<Matrix> unstack(const TableReader& tables, const std::string& name, 
 } // namespace
 
 void save_pose_tables(const PoseTables& tables, const BodyModel& model) {
-    TableWriter out;
-    out.integers("triangle_joints", flatten(tables.deformation.joints));
-    out.numbers("triangle_deformation", stack(tables.deformation.weights));
-    out.integers("vertex_joints", flatten(tables.correctives.joints));
-    out.numbers("vertex_correctives", stack(tables.correctives.weights));
-    out.write(model.folder / kFile);
+    TableWriter scape, baked;
+    scape.integers("joints", pack(tables.deformation.joints));
+    scape.numbers("weights", stack(tables.deformation.weights));
+    scape.write(model.folder / kScapeFile);
+    baked.integers("joints", pack(tables.correctives.joints));
+    baked.numbers("weights", stack(tables.correctives.weights));
+    baked.write(model.folder / kBakedFile);
 }
 
 PoseTables load_pose_tables(const BodyModel& model) {
-    const std::filesystem::path file = model.folder / kFile;
-    const TableReader in(file);
+    const std::filesystem::path scape_file = model.folder / kScapeFile;
+    const std::filesystem::path baked_file = model.folder / kBakedFile;
+    const TableReader scape(scape_file), baked(baked_file);
     const std::size_t nf = model.rest.triangles.size(), nv = model.rest.positions.size();
     PoseTables out;
-    out.deformation.joints = joints_of(in, "triangle_joints", nf, file.string());
-    out.deformation.weights =
-        unstack<Eigen::Matrix<float, 9, kPoseFeatures>>(in, "triangle_deformation", nf);
-    out.correctives.joints = joints_of(in, "vertex_joints", nv, file.string());
-    out.correctives.weights =
-        unstack<Eigen::Matrix<float, 3, kPoseFeatures>>(in, "vertex_correctives", nv);
+    out.deformation.joints = unpack(scape, nf, scape_file.string());
+    out.deformation.weights = unstack<Eigen::Matrix<float, 9, kPoseFeatures>>(scape, nf);
+    out.correctives.joints = unpack(baked, nv, baked_file.string());
+    out.correctives.weights = unstack<Eigen::Matrix<float, 3, kPoseFeatures>>(baked, nv);
     return out;
 }
 

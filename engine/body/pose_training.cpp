@@ -36,16 +36,15 @@ std::vector<Example> make_examples(const BodyModel& model, const Flesh& flesh, i
 }
 
 /// (features x features) inverse of the ridge regression's matrix, for each group of joints in use.
-std::map<NearJoints, FeatureSquare> regression_inverses(const std::vector<Example>& examples,
+std::map<NearJoints, FeatureSquare> regression_inverses(const std::vector<Pose>& poses,
                                                         const std::vector<NearJoints>& groups,
                                                         double ridge) {
     std::map<NearJoints, FeatureSquare> out;
     for (const auto& group : groups) {
         auto [entry, is_new] = out.emplace(group, FeatureSquare::Zero());
         if (!is_new) continue;
-        for (const auto& example : examples) {
-            const auto f =
-                pose_features(rotation_vectors(example.pose), group).cast<double>().eval();
+        for (const auto& pose : poses) {
+            const auto f = pose_features(rotation_vectors(pose), group).cast<double>().eval();
             entry->second += f * f.transpose();
         }
         // Relative to each feature's own size, so that units do not matter.
@@ -90,7 +89,10 @@ PoseDeformation fit_deformation(const BodyModel& model, const std::vector<Exampl
                               pose_features(turns, out.joints[t]).transpose();
         }
     }
-    const auto inverses = regression_inverses(examples, out.joints, ridge);
+    std::vector<Pose> poses;
+    for (const auto& example : examples)
+        poses.push_back(example.pose);
+    const auto inverses = regression_inverses(poses, out.joints, ridge);
     for (std::size_t t = 0; t < triangles.size(); ++t)
         out.weights[t] = out.weights[t] * inverses.at(out.joints[t]).cast<float>();
     return out;
@@ -104,25 +106,29 @@ std::vector<NearJoints> nearest_joints_of_vertices(const BodyModel& model) {
     return nearest_joints(model, points);
 }
 
-/// Correctives that bring plain dual quaternion skinning onto `posed` (examples x nv).
-Correctives fit_correctives(const BodyModel& model, const std::vector<Example>& examples,
-                            const std::vector<std::vector<Vec3f>>& posed, double ridge) {
+/// Correctives that bring plain dual quaternion skinning onto what SCAPE makes of `poses`.
+Correctives fit_correctives(const BodyModel& model, const PoseDeformation& deformation,
+                            const std::vector<Pose>& poses, double ridge) {
     const std::size_t n = model.rest.positions.size();
+    const ScapeModel scape(model, deformation);
+    ScapeBody body(scape, {model.rest.positions, model.skeleton});
+    std::vector<Vec3f> posed(n);
     Correctives out;
     out.joints = nearest_joints_of_vertices(model);
     out.weights.assign(n, Eigen::Matrix<float, 3, kPoseFeatures>::Zero());
-    for (std::size_t e = 0; e < examples.size(); ++e) {
-        const auto motions = to_dual_quaternions(skinning_transforms(
-            model.skeleton, forward_kinematics(model.skeleton, examples[e].pose)));
-        const RotationVectors turns = rotation_vectors(examples[e].pose);
+    for (const auto& pose : poses) {
+        body.pose(pose, posed);
+        const auto motions = to_dual_quaternions(
+            skinning_transforms(model.skeleton, forward_kinematics(model.skeleton, pose)));
+        const RotationVectors turns = rotation_vectors(pose);
         for (std::size_t v = 0; v < n; ++v) {
             const Vec3f unposed =
-                blend(motions, model.skin.joints[v], model.skin.weights[v]).inverse() * posed[e][v];
+                blend(motions, model.skin.joints[v], model.skin.weights[v]).inverse() * posed[v];
             out.weights[v] += (unposed - model.rest.positions[v]) *
                               pose_features(turns, out.joints[v]).transpose();
         }
     }
-    const auto inverses = regression_inverses(examples, out.joints, ridge);
+    const auto inverses = regression_inverses(poses, out.joints, ridge);
     for (std::size_t v = 0; v < n; ++v)
         out.weights[v] = out.weights[v] * inverses.at(out.joints[v]).cast<float>();
     return out;
@@ -200,13 +206,11 @@ TrainedPose train_pose(const BodyModel& model, const PoseOptions& options) {
         make_examples(model, flesh, options.test_poses, options.seed + 1000000, done);
     TrainedPose out;
     out.tables.deformation = fit_deformation(model, examples, options.ridge);
-    const ScapeModel scape(model, out.tables.deformation);
-    std::vector<std::vector<Vec3f>> posed(examples.size(),
-                                          std::vector<Vec3f>(model.rest.positions.size()));
-    ScapeBody body(scape, {model.rest.positions, model.skeleton});
-    for (std::size_t e = 0; e < examples.size(); ++e)
-        body.pose(examples[e].pose, posed[e]);
-    out.tables.correctives = fit_correctives(model, examples, posed, options.ridge);
+    std::vector<Pose> poses;
+    Random random(options.seed + 2000000);
+    for (int i = 0; i < options.baked_poses; ++i)
+        poses.push_back(random_pose(model.skeleton, random));
+    out.tables.correctives = fit_correctives(model, out.tables.deformation, poses, options.ridge);
     out.report = test(model, out, tests, examples.size());
     return out;
 }

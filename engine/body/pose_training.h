@@ -14,7 +14,8 @@ namespace toile::body {
 struct PoseOptions {
     int training_poses = 280;
     int test_poses = 24;
-    double ridge = 0.05; ///< of each feature's mean square
+    int baked_poses = 800; ///< posed by SCAPE, for the correctives: cheap
+    double ridge = 0.05;   ///< of each feature's mean square
     std::uint64_t seed = 7;
     FleshOptions flesh;
     std::function<void(double)> progress = [](double) {};
@@ -29,7 +30,7 @@ struct TrainedPose {
 /// equal results. \throw Error
 [[nodiscard]] TrainedPose train_pose(const BodyModel& model, const PoseOptions& options);
 
-/// The same for the model in `folder`, written beside it as `pose.tables`; returns the report.
+/// The same for the model in `folder`, written beside it (see pose_tables.h); returns the report.
 nlohmann::ordered_json train_pose_tables(const std::filesystem::path& folder,
                                          const PoseOptions& options);
 

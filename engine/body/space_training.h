@@ -21,7 +21,8 @@ struct SpaceOptions {
     std::function<void(double, const std::string&)> progress = [](double, const std::string&) {};
 };
 
-/// Trains and writes <out>/<id>/ (model, space.json, space.tables, pose.tables,
+/// Trains and writes <out>/<id>/ (model, space.json, space.tables, scape.tables,
+/// baked.tables,
 /// training.json, PROVENANCE.md); equal
 /// options and data give equal bytes. Returns what training.json holds: how the population and the
 /// space did. Takes about ten minutes on two cores. \throw Error
