@@ -87,8 +87,8 @@ void add_train_pose(CLI::App& group) {
 }
 
 /// "--waist_girth 0.72 --stature 1.70" as numbers.
-body::Measurements parse_measurements(const std::vector<std::string>& words) {
-    body::Measurements out;
+body::NamedLengths parse_measurements(const std::vector<std::string>& words) {
+    body::NamedLengths out;
     for (std::size_t i = 0; i < words.size(); i += 2) {
         if (!words[i].starts_with("--") || i + 1 == words.size())
             throw UsageError("'" + words[i] + "': measurements are given as --waist_girth 0.72");
@@ -109,7 +109,7 @@ struct NewBody {
 };
 
 void make_new(const NewBody& wish, const std::vector<std::string>& words) {
-    const body::Measurements wanted = parse_measurements(words);
+    const body::NamedLengths wanted = parse_measurements(words);
     const auto space = body::BodySpace::load(body::find_avatar(wish.model));
     const auto made =
         body::body_from_numbers(space, wish.sex == "female" ? body::Sex::female : body::Sex::male,
@@ -121,10 +121,8 @@ void make_new(const NewBody& wish, const std::vector<std::string>& words) {
     json["made_by"] = "measurements";
     json["sex"] = wish.sex;
     json["coefficients"] = std::vector<double>(made.coefficients.begin(), made.coefficients.end());
-    for (const auto& [name, metres] : made.measurements) {
-        json["measurements"][name]["value"] = metres;
-        json["measurements"][name]["confidence"] = wanted.count(name) != 0 ? 1.0 : 0.5;
-    }
+    for (const auto& [name, metres] : made.measurements)
+        json["measurements"][name] = {{"value", metres}, {"confidence", 1.0}};
     write_text(wish.out, json.dump(2) + "\n");
     for (const auto& [name, metres] : wanted)
         std::cout << name << " " << made.measurements.at(name) << " m (wanted " << metres << ")\n";

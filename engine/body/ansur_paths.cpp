@@ -1,9 +1,8 @@
 #include "body/ansur_paths.h"
 
-#include "body/avatar_anatomy.h"
-
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -14,7 +13,10 @@ namespace {
 // about 6 % larger (ISAK's phantom, of athletes: 29.41 to 26.89 cm, 9 %).
 constexpr double kFlexed = 1.0 / 1.06;
 constexpr float kGlutealFold = 0.02f; // below the crotch, metres
-constexpr float kSoleHeight = 0.03f;  // vertices this low may touch the floor
+constexpr float kNever = 1e6f;
+// Of the template's stature: C7 and the navel (medians of standing adults).
+constexpr float kCervicalHeight = 0.858f, kNavelHeight = 0.600f;
+constexpr float kSoleHeight = 0.03f; // vertices this low may touch the floor
 
 std::uint32_t nearest_vertex(const AvatarTemplate& avatar, const Vec3f& p) {
     std::uint32_t best = 0;
@@ -101,14 +103,7 @@ AnsurPaths::AnsurPaths(const AvatarTemplate& avatar, std::span<const Part> label
     leg_ = triangles_of(kLeg, labels, true);
 
     const auto& positions = avatar.mesh.positions;
-    const auto marks = find_landmarks(avatar, positions, avatar.skeleton, labels);
-    crown_ = marks.at("crown");
-    nipple_ = marks.at("left_bust_point");
-    navel_ = marks.at("navel");
-    crotch_ = marks.at("crotch");
-    acromion_ = marks.at("left_shoulder");
-    cervicale_ = marks.at("neck_back");
-    patella_ = marks.at("left_knee");
+    find_marks(labels);
     const Vec3f elbow = avatar.skeleton.rest(Joint::left_lower_arm);
     const Vec3f wrist = avatar.skeleton.rest(Joint::left_hand);
     const Vec3f upper = (elbow - avatar.skeleton.rest(Joint::left_upper_arm)).normalized();
@@ -123,6 +118,48 @@ AnsurPaths::AnsurPaths(const AvatarTemplate& avatar, std::span<const Part> label
             p.x() > 0.03f && p.x() < 0.12f)
             seat_back_.push_back(v);
     }
+}
+
+void AnsurPaths::find_marks(std::span<const Part> labels) {
+    const auto& at = avatar_.mesh.positions;
+    const Skeleton& joints = avatar_.skeleton;
+    /// The vertex of the left half (or of its midline) with the least cost.
+    const auto best = [&](bool midline, const std::function<float(std::uint32_t)>& cost) {
+        std::uint32_t found = 0;
+        float least = std::numeric_limits<float>::max();
+        for (std::uint32_t v = 0; v < avatar_.half; ++v) {
+            if (midline && avatar_.mirror_of[v] != v) continue;
+            const float c = cost(v);
+            if (c < least) {
+                least = c;
+                found = v;
+            }
+        }
+        return found;
+    };
+    crown_ = best(true, [&](std::uint32_t v) { return -at[v].y(); });
+    const float stature = at[crown_].y(), spine_z = joints.rest(Joint::neck).z();
+    const auto midline_at = [&](float share, bool front) {
+        return best(true, [&, share, front](std::uint32_t v) {
+            return (at[v].z() > spine_z) == front ? std::abs(at[v].y() - share * stature) : kNever;
+        });
+    };
+    cervicale_ = midline_at(kCervicalHeight, false);
+    navel_ = midline_at(kNavelHeight, true);
+    crotch_ = best(
+        true, [&](std::uint32_t v) { return at[v].y() > 0.3f * stature ? at[v].y() : kNever; });
+    const Vec3f arm = joints.rest(Joint::left_upper_arm) + Vec3f(0.01f, 0.0f, 0.0f);
+    acromion_ = best(false, [&](std::uint32_t v) {
+        const Vec3f d = at[v] - arm;
+        return std::hypot(d.x(), d.z()) < 0.02f && d.y() > 0.0f ? -d.y() : kNever;
+    });
+    nipple_ = best(false, [&](std::uint32_t v) {
+        const float h = at[v].y() / stature;
+        const bool chest = labels[v] == Part::torso && at[v].x() > 0.05f && at[v].x() < 0.14f;
+        return chest && h > 0.69f && h < 0.76f ? -at[v].z() : kNever;
+    });
+    const Vec3f knee = joints.rest(Joint::left_lower_leg) + Vec3f(0.0f, 0.0f, 0.08f);
+    patella_ = best(false, [&](std::uint32_t v) { return (at[v] - knee).squaredNorm(); });
 }
 
 std::vector<Triangle> AnsurPaths::triangles_of(std::span<const Part> parts,

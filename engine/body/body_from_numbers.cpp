@@ -1,6 +1,6 @@
 #include "body/body_from_numbers.h"
 
-#include "body/avatar_anatomy.h"
+#include "body/measurer.h"
 #include "core/error.h"
 
 #include <Eigen/Dense>
@@ -14,7 +14,7 @@ namespace {
 constexpr double kStep = 0.2; // deviations, of the differences: larger than girths' 5 mm search
 constexpr double kUsual = 3.0;
 
-Eigen::VectorXd values_of(const Measurements& all, const Measurements& wanted) {
+Eigen::VectorXd values_of(const NamedLengths& all, const NamedLengths& wanted) {
     Eigen::VectorXd out(static_cast<int>(wanted.size()));
     int i = 0;
     for (const auto& [name, value] : wanted)
@@ -23,7 +23,7 @@ Eigen::VectorXd values_of(const Measurements& all, const Measurements& wanted) {
 }
 
 /// The wanted measurement that fits worst with the others, and what would fit (P(m | others)).
-std::string conflict(const Measurements& wanted, const Eigen::VectorXd& mean,
+std::string conflict(const NamedLengths& wanted, const Eigen::VectorXd& mean,
                      const Eigen::MatrixXd& covariance) {
     const auto n = static_cast<int>(wanted.size());
     const Eigen::MatrixXd precision =
@@ -55,14 +55,14 @@ std::string conflict(const Measurements& wanted, const Eigen::VectorXd& mean,
 
 } // namespace
 
-MeasureBody measure_by_landmarks(const BodyModel& model) {
-    return [&model](const BodyShape& shape) {
-        return measure_avatar(shape.positions, model.rest.triangles, shape.skeleton, model.parts,
-                              model.landmarks);
+MeasureBody measure_by_definitions(const BodyModel& model, std::span<const std::string> names) {
+    const auto definitions = measurement_definitions(names);
+    return [measurer = Measurer(model), definitions](const BodyShape& shape) {
+        return as_map(measurer.measure(shape.positions, shape.skeleton, definitions));
     };
 }
 
-BodyFromNumbers body_from_numbers(const BodySpace& space, Sex sex, const Measurements& wanted,
+BodyFromNumbers body_from_numbers(const BodySpace& space, Sex sex, const NamedLengths& wanted,
                                   const MeasureBody& measure, const NumbersOptions& options) {
     const CoefficientPrior& prior = space.prior(sex);
     const auto shape_of = [&](const Eigen::VectorXd& c) {

@@ -9,13 +9,15 @@
 
 namespace toile::body {
 
-using Measurements = std::map<std::string, double>; ///< ISO name -> metres
+using NamedLengths = std::map<std::string, double>; ///< ISO name -> metres
 
 /// How bodies are measured: all names that may be asked for.
-using MeasureBody = std::function<Measurements(const BodyShape&)>;
+using MeasureBody = std::function<NamedLengths(const BodyShape&)>;
 
-/// Measures bodies of the space with the model's own landmarks: see measure_avatar.
-[[nodiscard]] MeasureBody measure_by_landmarks(const BodyModel& model);
+/// Measures bodies of the space by those definitions (see body/measurement.h). \throw Error for an
+/// unknown name
+[[nodiscard]] MeasureBody measure_by_definitions(const BodyModel& model,
+                                                 std::span<const std::string> names);
 
 struct NumbersOptions {
     double tolerance_m = 0.002;     ///< each measurement is hit within this
@@ -25,7 +27,7 @@ struct NumbersOptions {
 
 struct BodyFromNumbers {
     Eigen::VectorXd coefficients; ///< (k)
-    Measurements measurements;    ///< of the body made, all that is measured
+    NamedLengths measurements;    ///< of the body made, all that is measured
     double deviations = 0.0;      ///< its distance from the population's middle
 };
 
@@ -34,7 +36,7 @@ struct BodyFromNumbers {
 /// \throw Error naming an unknown measurement, or for a set that nobody has the measurement that
 /// conflicts most with the others and the range that would go with them
 [[nodiscard]] BodyFromNumbers body_from_numbers(const BodySpace& space, Sex sex,
-                                                const Measurements& wanted,
+                                                const NamedLengths& wanted,
                                                 const MeasureBody& measure,
                                                 const NumbersOptions& options = {});
 

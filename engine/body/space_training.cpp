@@ -3,6 +3,7 @@
 #include "body/avatar_atlas.h"
 #include "body/avatar_files.h"
 #include "body/body_space.h"
+#include "body/measurer.h"
 #include "body/pose_training.h"
 #include "body/principal_components.h"
 #include "body/shape_metric.h"
@@ -116,9 +117,8 @@ BodyModel make_model(const Workshop& shop, const TrainedShape& shape, const Spac
     out.skeleton = mean.skeleton;
     out.skin = shop.skin;
     out.parts = shop.parts;
-    out.landmarks = find_landmarks(shop.avatar, out.rest.positions, out.skeleton, out.parts);
-    out.measurements = measure_avatar(out.rest.positions, out.rest.triangles, out.skeleton,
-                                      out.parts, out.landmarks);
+    out.landmarks = find_landmarks(shop.avatar);
+    out.measurements = as_map(Measurer(out).measure(out.rest.positions, out.skeleton));
     for (int c = 0; c < shape.components.components.cols(); ++c) {
         ShapeComponent component;
         component.name = "shape_" + std::to_string(c + 1);

@@ -157,23 +157,26 @@ TEST_F(AdultPose, TablesOfAnotherModelAreRefused) {
     EXPECT_ERROR(static_cast<void>(load_pose_tables(other)), "fit");
 }
 
+BodyFromNumbers from_numbers(Sex sex, const NamedLengths& wanted) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : wanted)
+        names.push_back(name);
+    return body_from_numbers(adult(), sex, wanted, measure_by_definitions(adult().model(), names));
+}
+
 TEST(BodyNumbers, HitsWhatIsAskedWithinTwoMillimetres) {
-    const Measurements wanted = {{"stature", 1.68}, {"bust_girth", 0.92}, {"hip_girth", 1.0}};
-    const auto made =
-        body_from_numbers(adult(), Sex::female, wanted, measure_by_landmarks(adult().model()));
+    const NamedLengths wanted = {{"stature", 1.68}, {"bust_girth", 0.92}, {"hip_girth", 1.0}};
+    const auto made = from_numbers(Sex::female, wanted);
     for (const auto& [name, value] : wanted)
         EXPECT_NEAR(made.measurements.at(name), value, 0.002) << name;
     EXPECT_LT(made.deviations, 3.0);
 }
 
 TEST(BodyNumbers, RefusesWhatNobodyIsByName) {
-    const auto measure = measure_by_landmarks(adult().model());
-    EXPECT_ERROR(static_cast<void>(body_from_numbers(
-                     adult(), Sex::male, {{"stature", 1.75}, {"cervical_height", 1.0}}, measure)),
-                 "nobody measures like that");
     EXPECT_ERROR(
-        static_cast<void>(body_from_numbers(adult(), Sex::male, {{"tail_length", 0.3}}, measure)),
-        "tail_length");
+        static_cast<void>(from_numbers(Sex::male, {{"stature", 1.75}, {"cervical_height", 1.0}})),
+        "nobody measures like that");
+    EXPECT_ERROR(static_cast<void>(from_numbers(Sex::male, {{"tail_length", 0.3}})), "tail_length");
 }
 
 class TableFile : public testing::Test {
