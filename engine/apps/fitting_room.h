@@ -1,7 +1,7 @@
 // What `tryon` and `mirror` need before the first frame: plugins, a body, and its garments.
 #pragma once
 
-#include "apps/commands.h"
+#include "apps/global_options.h"
 #include "host/job.h"
 #include "host/registry.h"
 #include "pipeline/dressed_person.h"

@@ -24,7 +24,7 @@ bool is_eye(const std::string& group) {
 }
 
 std::string read_text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
+    const std::ifstream in(file, std::ios::binary);
     if (!in) throw FileError(file.string(), "cannot be opened; is this the MakeHuman data folder?");
     std::ostringstream text;
     text << in.rdbuf();

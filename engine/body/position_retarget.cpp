@@ -117,7 +117,7 @@ void PositionRetargeter::solve_trunk() noexcept {
     const Vec3f lateral = unit_or(shoulders, Vec3f::UnitX());
     const Vec3f pelvis_lateral = trust * unit_or(hip_line, lateral) + (1.15f - trust) * lateral;
     const Vec3f pelvis_up = (0.4f + 0.6f * trust) * lower + 0.6f * (1.0f - trust) * upper;
-    Quatf pelvis = limit_tilt(frame_of(pelvis_lateral, pelvis_up), kPelvisTilt);
+    const Quatf pelvis = limit_tilt(frame_of(pelvis_lateral, pelvis_up), kPelvisTilt);
     observed_chest_ = frame_of(lateral, upper);
     const Quatf bend = limit_angle(pelvis.conjugate() * observed_chest_, kSpineBend);
     auto& world = frame_.joints;

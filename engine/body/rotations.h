@@ -28,9 +28,7 @@ inline constexpr float kDegree = kPi / 180.0f;
 }
 
 /// Shortest rotation from one unit vector to another.
-[[nodiscard]] inline Quatf swing(const Vec3f& from, const Vec3f& to) noexcept {
-    return Quatf::FromTwoVectors(from, to);
-}
+[[nodiscard]] Quatf swing(const Vec3f& from, const Vec3f& to) noexcept;
 
 /// Axes of a frame whose y is `up` and whose x is as near to `lateral` as that allows.
 [[nodiscard]] inline Quatf frame_of(const Vec3f& lateral, const Vec3f& up) noexcept {

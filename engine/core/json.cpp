@@ -78,7 +78,7 @@ nlohmann::json parse_json_file(const std::filesystem::path& file, std::size_t ma
     if (code || bytes > max_bytes)
         throw JsonError(file.string(), "larger than the " + std::to_string(max_bytes) +
                                            " bytes that such a file may have");
-    std::ifstream in(file, std::ios::binary);
+    const std::ifstream in(file, std::ios::binary);
     std::ostringstream text;
     text << in.rdbuf();
     if (!in) throw JsonError(file.string(), "cannot be read");

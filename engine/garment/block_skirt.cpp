@@ -183,7 +183,7 @@ Pattern draft_skirt(const BodyProbe& body, const SkirtOptions& options) {
         },
         options.band_ease_m);
 
-    Gores gores{
+    const Gores gores{
         cone, band_top, top_girth, band->front_share(cone.waist_y), band->front_share(band_top),
         loft, band};
     Pattern pattern;

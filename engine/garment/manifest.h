@@ -2,7 +2,6 @@
 #pragma once
 
 #include "body/body_model.h"
-#include "core/json.h"
 #include "garment/fault.h"
 
 #include <map>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -115,6 +116,29 @@ TEST_F(TryOnTest, MirrorDressesEveryFrameAndReports) {
         EXPECT_GT(json["stages"][stage]["max_ms"].get<double>(), 0.0) << stage;
     EXPECT_FALSE(json.contains("latency")) << "lock-step has no latency";
     EXPECT_EQ(json["seed"], 1);
+}
+
+TEST_F(TryOnTest, MirrorWithoutHeadlessShowsAWindow) {
+    if (std::system("command -v xvfb-run >/dev/null") != 0) GTEST_SKIP() << "no xvfb-run here";
+    const fs::path log = write_log(folder_ / "log.csv", 30);
+    const fs::path file = folder_ / "r.json";
+    const ProgramResult result =
+        run_program({"xvfb-run", "-a", "-s", "-screen 0 640x480x24", toile_program(), "mirror",
+                     "--source", "kinect-log:" + log.string(), "--garment", "t-shirt", "--picture",
+                     "180x240", "--quality", "fast", "--report", file.string()});
+    ASSERT_EQ(result.status, 0) << result.output;
+    const nlohmann::json json = report(file);
+    EXPECT_EQ(json["frames"].get<int>() + json["dropped"].get<int>(), 30);
+    EXPECT_GT(json["latency"]["picture"]["median_ms"].get<double>(), 0.0) << "nothing was shown";
+}
+
+TEST_F(TryOnTest, WithoutADisplayMirrorSaysWhatToDo) {
+    const fs::path log = write_log(folder_ / "log.csv", 30);
+    const ProgramResult result =
+        run_toile({"mirror", "--source", "kinect-log:" + log.string(), "--garment", "t-shirt"},
+                  "env -u DISPLAY");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.output, HasSubstr("--headless"));
 }
 
 TEST_F(TryOnTest, TheSameBytesTwiceAndWithOneOrTwoThreads) {

@@ -1,6 +1,7 @@
 // What we export passes the Khronos validator, without errors or warnings.
 #include "assets/files.h"
 #include "core/bytes.h"
+#include "support/run_program.h"
 #include "support/scenes.h"
 #include "support/shared_data.h"
 #include "support/temporary_folder.h"
@@ -96,6 +97,29 @@ TEST_F(GltfValidator, PassesReexportsOfSharedSkins) {
         begin = end + 1;
     }
     EXPECT_EQ(faults, "");
+}
+
+TEST_F(GltfValidator, PassesTheAvatarsAndGarmentsOfTheRepository) {
+    const std::filesystem::path root = TOILE_SOURCE_DIR;
+    std::vector<std::filesystem::path> files;
+    for (const char* kind : {"avatars", "garments"})
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(root / kind))
+            if (entry.path().extension() == ".glb") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    ASSERT_GE(files.size(), 9u);
+    const Verdict verdict = validate(files);
+    EXPECT_EQ(verdict.status, 0) << verdict.text;
+}
+
+TEST_F(GltfValidator, PassesADressedLook) {
+    const test::TemporaryFolder folder;
+    const test::ProgramResult tryon =
+        test::run_toile({"tryon", "--body", "woman", "--garment", "t-shirt,skirt", "--picture",
+                         "90x120", "--quality", "fast", "--out", (folder / "look.png").string(),
+                         "--glb", (folder / "look.glb").string()});
+    ASSERT_EQ(tryon.status, 0) << tryon.output;
+    const Verdict verdict = validate({folder / "look.glb"});
+    EXPECT_EQ(verdict.status, 0) << verdict.text;
 }
 
 } // namespace

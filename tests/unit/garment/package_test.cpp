@@ -2,6 +2,7 @@
 
 #include "assets/files.h"
 #include "core/bytes.h"
+#include "core/json.h"
 #include "support/garments.h"
 #include "support/temporary_folder.h"
 #include "support/throws.h"

@@ -1,0 +1,1 @@
+// The source that CMake wants for precompiled headers (ToileBuild.cmake).
