@@ -49,8 +49,8 @@ struct Figure {
     std::array<double, kRegionCount> region_trust;     ///< [0, 1]: how well its tapes can lie
     double standing = 1.0; ///< [0, 1]: how far heights above the floor mean what they say
 
-    Vec3f up = Vec3f::UnitY(); ///< against gravity
-    Axes hips, waist, chest;   ///< across their `up` the trunk's girths lie
+    Vec3f up = Vec3f::UnitY();      ///< against gravity
+    Axes hips, waist, chest;        ///< across their `up` the trunk's girths lie
     Vec3f neck_up = Vec3f::UnitY(); ///< along the neck
     Limb right_arm, right_leg;      ///< tapes of limbs are laid on the right, as by ISO 8559-1
 
