@@ -70,8 +70,8 @@ Measurements measure(const Figure& figure,
     return out;
 }
 
-std::vector<LaidMeasurement>
-lay_tapes(const Figure& figure, std::span<const MeasurementDefinition* const> definitions) {
+std::vector<LaidMeasurement> lay_tapes(const Figure& figure,
+                                       std::span<const MeasurementDefinition* const> definitions) {
     Survey survey(figure);
     std::vector<LaidMeasurement> out;
     out.reserve(definitions.size());

@@ -43,8 +43,8 @@ struct LaidMeasurement {
 
 /// Takes measurements; a name that a body does not allow (a tape that meets nothing) comes with
 /// value 0 and confidence 0. About 0.1 ms each.
-[[nodiscard]] Measurements
-measure(const Figure& figure, std::span<const MeasurementDefinition* const> definitions);
+[[nodiscard]] Measurements measure(const Figure& figure,
+                                   std::span<const MeasurementDefinition* const> definitions);
 [[nodiscard]] std::vector<LaidMeasurement>
 lay_tapes(const Figure& figure, std::span<const MeasurementDefinition* const> definitions);
 

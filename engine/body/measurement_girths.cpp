@@ -225,9 +225,9 @@ Reading ankle_girth(Survey& s) {
 
 Reading trunk_circumference(Survey& s) {
     const Vec3f ahead = s.figure().chest.forward, up = s.figure().chest.up;
-    const Vec3f top = half_way(geometry::taut_path(s.figure().positions, s.figure().triangles,
-                                                   s.at(right_neck_side), s.at(right_shoulder),
-                                                   up));
+    const Vec3f top =
+        half_way(geometry::taut_path(s.figure().positions, s.figure().triangles,
+                                     s.at(right_neck_side), s.at(right_shoulder), up));
     const Vec3f between = s.at(crotch);
     s.rest_on(0.9);
     return laid_through(s, top, {{s.at(right_bust_point), ahead}, {between, ahead}, {top, -ahead}});

@@ -14,8 +14,7 @@ using geometry::GirthCutter;
 Reading upright(Survey& s, const Vec3f& point) {
     Reading out;
     out.value_m = s.height(point);
-    out.tapes.push_back(
-        {{point - static_cast<float>(out.value_m) * s.figure().up, point}, false});
+    out.tapes.push_back({{point - static_cast<float>(out.value_m) * s.figure().up, point}, false});
     out.confidence = s.trust();
     return out;
 }
@@ -79,8 +78,8 @@ Vec3f farthest(Survey& s, Region region, const Vec3f& direction) {
 
 /// The middle of the back at the level of `point` on the chest's cuts.
 Vec3f back_at(Survey& s, const Vec3f& point) {
-    return s.level_point(s.chest(), s.chest().offset(point),
-                         s.middle_of(left_armpit, right_armpit), -s.figure().chest.forward);
+    return s.level_point(s.chest(), s.chest().offset(point), s.middle_of(left_armpit, right_armpit),
+                         -s.figure().chest.forward);
 }
 
 /// Where a tape that hangs from the bust point meets the waist.
@@ -156,12 +155,13 @@ Reading front_waist_length(Survey& s) {
     return then(s, neck_side_to_bust_point(s), std::move(down));
 }
 Reading back_waist_length(Survey& s) {
-    return over(s, s.at(neck_back), s.waist_point(-s.figure().waist.forward), -s.figure().waist.forward);
+    return over(s, s.at(neck_back), s.waist_point(-s.figure().waist.forward),
+                -s.figure().waist.forward);
 }
 Reading back_navel_length(Survey& s) {
     const Vec3f inside = s.middle_of(left_iliac_crest, right_iliac_crest);
-    const Vec3f low = s.level_point(s.waist(), s.waist().offset(s.at(navel)), inside,
-                                    -s.figure().waist.forward);
+    const Vec3f low =
+        s.level_point(s.waist(), s.waist().offset(s.at(navel)), inside, -s.figure().waist.forward);
     return over(s, s.at(neck_back), low, -s.figure().waist.forward);
 }
 Reading scye_depth(Survey& s) {
@@ -189,7 +189,8 @@ Reading navel_crotch_length(Survey& s) {
                 s.level_point(s.waist(), at_navel, inside, -ahead), -s.figure().hips.up);
 }
 Reading upper_body_length(Survey& s) {
-    return over(s, s.at(neck_back), s.hip_point(-s.figure().hips.forward), -s.figure().hips.forward);
+    return over(s, s.at(neck_back), s.hip_point(-s.figure().hips.forward),
+                -s.figure().hips.forward);
 }
 Reading neck_to_hip_distance(Survey& s) {
     const Vec3f top = s.at(neck_back);
@@ -243,8 +244,8 @@ Reading foot_length(Survey& s) {
         toe = std::max(toe, ahead.dot(p));
     }
     const Vec3f sole = leg.tip - static_cast<float>(s.height(leg.tip)) * up;
-    return straight(s, {sole + (heel - ahead.dot(sole)) * ahead,
-                        sole + (toe - ahead.dot(sole)) * ahead});
+    return straight(
+        s, {sole + (heel - ahead.dot(sole)) * ahead, sole + (toe - ahead.dot(sole)) * ahead});
 }
 Reading acromion_radiale_length(Survey& s) {
     return straight(s, {s.at(right_shoulder), s.at(right_radiale)});
@@ -270,8 +271,7 @@ Reading span(Survey& s) {
     // Half the breadth of the shoulders, then the arm as if it were straight.
     const Vec3f shoulders = s.at(left_shoulder) - s.at(right_shoulder);
     const Vec3f middle = s.middle_of(left_shoulder, right_shoulder);
-    half.value_m += static_cast<double>(
-        std::abs(shoulders.normalized().dot(middle - arm.root)));
+    half.value_m += static_cast<double>(std::abs(shoulders.normalized().dot(middle - arm.root)));
     half.value_m *= 2.0;
     s.rest_on(kArmsAreNotSpread);
     half.confidence = s.trust();

@@ -1,5 +1,5 @@
-#include "body/measurement_rules.h"
 #include "body/measurement.h"
+#include "body/measurement_rules.h"
 
 #include <array>
 
@@ -18,8 +18,8 @@ constexpr auto kDefinitions = std::to_array<MeasurementDefinition>({
      shoulder_height},
     {"armpit_height", height, "", "From the floor to the armpit.", armpit_height},
     {"bust_height", height, "chestheight", "From the floor to the bust point.", bust_height},
-    {"waist_height", height, "",
-     "From the floor to the waist level at the side (see waist_girth).", waist_height},
+    {"waist_height", height, "", "From the floor to the waist level at the side (see waist_girth).",
+     waist_height},
     {"trochanter_height", height, "trochanterionheight", "From the floor to the trochanter.",
      trochanter_height},
     {"hip_height", height, "buttockheight",
@@ -110,8 +110,7 @@ constexpr auto kDefinitions = std::to_array<MeasurementDefinition>({
      "From the neck side point over the bust point and straight down to the waist level.",
      front_waist_length},
     {"back_waist_length", length, "",
-     "Down the middle of the back from the neck back point to the waist level.",
-     back_waist_length},
+     "Down the middle of the back from the neck back point to the waist level.", back_waist_length},
     {"scye_depth", length, "",
      "Down the middle of the back from the neck back point to the level of the armpits.",
      scye_depth},
@@ -123,8 +122,8 @@ constexpr auto kDefinitions = std::to_array<MeasurementDefinition>({
      "From the middle of the front at the waist level through the crotch to the middle of the "
      "back.",
      total_crotch_length},
-    {"upper_arm_length", length, "",
-     "Straight from the shoulder point to the tip of the elbow.", upper_arm_length},
+    {"upper_arm_length", length, "", "Straight from the shoulder point to the tip of the elbow.",
+     upper_arm_length},
     {"lower_arm_length", length, "", "Straight from the tip of the elbow to the wrist bone.",
      lower_arm_length},
     {"arm_length", length, "",
@@ -139,8 +138,7 @@ constexpr auto kDefinitions = std::to_array<MeasurementDefinition>({
      underarm_length},
     {"hand_length", length, "handlength",
      "Straight from the inner wrist bone to the tip of the middle finger.", hand_length},
-    {"inside_leg_length", length, "", "From the crotch straight down to the floor.",
-     crotch_height},
+    {"inside_leg_length", length, "", "From the crotch straight down to the floor.", crotch_height},
     {"outside_leg_length", length, "",
      "From the waist level over the side to the hip level, then straight down to the floor.",
      outside_leg_length},

@@ -24,7 +24,8 @@ class ScyePlanes {
             };
             const Vec3f armpit = at(Landmark::left_armpit);
             const Vec3f up = at(Landmark::left_shoulder) - armpit;
-            const Vec3f out = left ? Vec3f(up.cross(Vec3f::UnitZ())) : Vec3f(Vec3f::UnitZ().cross(up));
+            const Vec3f out =
+                left ? Vec3f(up.cross(Vec3f::UnitZ())) : Vec3f(Vec3f::UnitZ().cross(up));
             planes_[left ? 0 : 1] = geometry::Plane::through(armpit, out);
         }
     }
@@ -61,13 +62,14 @@ Regions make_regions(const BodyModel& model,
             return std::count_if(t.begin(), t.end(),
                                  [&](std::uint32_t v) { return test(model.parts[v]); });
         };
+        const bool left = model.rest.positions[t[0]].x() > 0.0f;
         if (count(is_arm) > 0 && !scyes.inside(t)) {
-            const bool left = model.rest.positions[t[0]].x() > 0.0f;
             put(left ? Region::left_arm : Region::right_arm, t);
             continue;
         }
-        if (count([](Part p) { return is_leg(p, true); }) == 3) put(Region::left_leg, t);
-        if (count([](Part p) { return is_leg(p, false); }) == 3) put(Region::right_leg, t);
+        // The seat belongs to the leg too: a tape at the gluteal fold may touch it.
+        if (count([left](Part p) { return is_leg(p, left) || p == Part::pelvis; }) == 3)
+            put(left ? Region::left_leg : Region::right_leg, t);
         const auto head = count([](Part p) { return p == Part::head; });
         if (head + count([](Part p) { return p == Part::neck; }) == 3) put(Region::head, t);
         if (head + count(is_below_thigh) == 0) put(Region::trunk, t);
@@ -176,9 +178,8 @@ Measurements Measurer::measure(std::span<const Vec3f> positions, const Skeleton&
     return measure(positions, skeleton, all);
 }
 
-Measurements
-Measurer::measure(std::span<const Vec3f> positions, const Skeleton& skeleton,
-                  std::span<const MeasurementDefinition* const> definitions) const {
+Measurements Measurer::measure(std::span<const Vec3f> positions, const Skeleton& skeleton,
+                               std::span<const MeasurementDefinition* const> definitions) const {
     return body::measure(figure(positions, skeleton), definitions);
 }
 

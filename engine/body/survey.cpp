@@ -95,8 +95,7 @@ float Survey::waist_level() {
         for (int k = 0; k < kLevels; ++k)
             girths[static_cast<std::size_t>(k)] = cut.girth(spread(low, high, k));
         const double least = *std::min_element(girths.begin(), girths.end());
-        const float level =
-            soft_best(low, high, girths, std::max(1e-9, kWaistSoftness * least));
+        const float level = soft_best(low, high, girths, std::max(1e-9, kWaistSoftness * least));
         waist_level_ = {level, trust_};
         trust_ = before;
     }
@@ -131,8 +130,8 @@ Vec3f Survey::level_point(const GirthCutter& cutter, float offset, const Vec3f& 
     const Vec3f origin = inside + (offset - cutter.offset(inside)) * up;
     const Vec3f ahead = (towards - towards.dot(up) * up).normalized();
     const Vec3f across = up.cross(ahead);
-    const auto loops = geometry::slice(figure_.positions, region(Region::trunk).triangles(),
-                                       {up, offset});
+    const auto loops =
+        geometry::slice(figure_.positions, region(Region::trunk).triangles(), {up, offset});
     Vec3f best = origin;
     float farthest = 0.0f;
     for (const geometry::Loop& loop : loops) {

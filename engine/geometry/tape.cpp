@@ -23,8 +23,7 @@ Passing nearest_on(const Loop& loop, const Vec3f& point) {
         const Vec3f step = loop.points[(i + 1) % count] - loop.points[i];
         const Vec3f off = point - loop.points[i];
         const float length2 = step.squaredNorm();
-        const float share =
-            length2 > 0.0f ? std::clamp(off.dot(step) / length2, 0.0f, 1.0f) : 0.0f;
+        const float share = length2 > 0.0f ? std::clamp(off.dot(step) / length2, 0.0f, 1.0f) : 0.0f;
         const float distance = (off - share * step).norm();
         if (distance < out.distance) out = {i, share, distance};
     }
@@ -97,8 +96,8 @@ SurfacePart::SurfacePart(std::vector<Triangle> triangles) : triangles_(std::move
     std::sort(vertices_.begin(), vertices_.end());
     vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
     const auto place = [this](std::uint32_t v) {
-        return static_cast<std::uint32_t>(
-            std::lower_bound(vertices_.begin(), vertices_.end(), v) - vertices_.begin());
+        return static_cast<std::uint32_t>(std::lower_bound(vertices_.begin(), vertices_.end(), v) -
+                                          vertices_.begin());
     };
     for (const Triangle& t : triangles_)
         for (std::size_t k = 0; k < 3; ++k) {
@@ -165,8 +164,7 @@ Loop taut_path(std::span<const Vec3f> positions, std::span<const Triangle> trian
         if (!ahead) std::reverse(arc->begin(), arc->end());
         arc->insert(arc->begin(), from);
         arc->push_back(to);
-        const double merit =
-            way == Way::shorter ? -Loop{*arc, false}.length() : reach(*arc, side);
+        const double merit = way == Way::shorter ? -Loop{*arc, false}.length() : reach(*arc, side);
         if (merit <= most) continue;
         most = merit;
         best = pull_tight(*arc, (ahead ? 1.0 : -1.0) * plane.normal.cast<double>());

@@ -67,8 +67,10 @@ TEST(Landmarks, HaveNamesAndOppositesBothWays) {
         EXPECT_EQ(landmark_from_name(landmark_name(landmark)), landmark);
         EXPECT_EQ(opposite(opposite(landmark)), landmark);
         std::string name(landmark_name(landmark));
-        if (name.starts_with("left_")) name.replace(0, 4, "right");
-        else if (name.starts_with("right_")) name.replace(0, 5, "left");
+        if (name.starts_with("left_"))
+            name.replace(0, 4, "right");
+        else if (name.starts_with("right_"))
+            name.replace(0, 5, "left");
         EXPECT_EQ(landmark_name(opposite(landmark)), name);
     }
 }
@@ -102,11 +104,13 @@ TEST_P(MeasuredAvatar, IsAsAPersonIs) {
     rising({"ankle_height", "knee_height", "crotch_height", "hip_height", "ansur_waist_height",
             "waist_height", "bust_height", "armpit_height", "shoulder_height", "cervical_height",
             "stature"});
-    rising({"minimum_leg_girth", "lower_knee_girth", "mid_thigh_girth", "thigh_girth", "hip_girth"});
+    rising(
+        {"minimum_leg_girth", "lower_knee_girth", "mid_thigh_girth", "thigh_girth", "hip_girth"});
     rising({"wrist_girth", "forearm_girth", "upper_arm_girth", "neck_girth", "neck_base_girth"});
     rising({"under_bust_girth", "bust_girth", "trunk_circumference"});
     rising({"waist_girth", "high_hip_girth", "hip_girth"});
-    rising({"shoulder_length", "shoulder_width", "back_shoulder_width", "cervical_to_wrist_length"});
+    rising(
+        {"shoulder_length", "shoulder_width", "back_shoulder_width", "cervical_to_wrist_length"});
     rising({"waist_to_hip", "back_waist_length", "front_waist_length", "upper_body_length"});
     // Two ways to one length.
     EXPECT_NEAR(value(rest_, "upper_arm_length") + value(rest_, "lower_arm_length"),
@@ -137,8 +141,7 @@ TEST_P(MeasuredAvatar, MayFaceAnyWay) {
     Pose pose = rest_pose(model_.skeleton);
     pose.hips_position = turn * pose.hips_position + Vec3f(0.4f, 0.0f, -1.0f);
     pose.rotations[0] = turn;
-    const Figure figure =
-        measurer_.figure(positions, forward_kinematics(model_.skeleton, pose));
+    const Figure figure = measurer_.figure(positions, forward_kinematics(model_.skeleton, pose));
     const Measurements turned = measure(figure, all_definitions());
     for (std::size_t i = 0; i < rest_.size(); ++i)
         EXPECT_NEAR(turned[i].value_m, rest_[i].value_m, 2e-4) << rest_[i].name;
@@ -179,15 +182,15 @@ TEST(Measurer, ChangesSmoothlyWithTheShape) {
                                    t * man.rest.positions[v]);
         Skeleton skeleton;
         for (std::size_t j = 0; j < kJointCount; ++j)
-            skeleton.rest_positions[j] = (1.0f - t) * woman.skeleton.rest_positions[j] +
-                                         t * man.skeleton.rest_positions[j];
+            skeleton.rest_positions[j] =
+                (1.0f - t) * woman.skeleton.rest_positions[j] + t * man.skeleton.rest_positions[j];
         values.push_back(measurer.measure(positions, skeleton));
     }
     // The change from step to step changes little itself: no jump hides in 1 mm.
     for (std::size_t i = 0; i < values[0].size(); ++i)
         for (int k = 1; k < kSteps; ++k) {
-            const double bend = values[k + 1][i].value_m - 2.0 * values[k][i].value_m +
-                                values[k - 1][i].value_m;
+            const double bend =
+                values[k + 1][i].value_m - 2.0 * values[k][i].value_m + values[k - 1][i].value_m;
             EXPECT_LT(std::abs(bend), 0.001) << values[0][i].name << " at step " << k;
         }
 }
