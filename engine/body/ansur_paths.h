@@ -33,6 +33,7 @@ class AnsurPaths {
     [[nodiscard]] std::vector<Measured> measure(const BodyShape& body) const;
 
   private:
+    void find_marks(std::span<const Part> labels);
     [[nodiscard]] std::vector<Triangle>
     triangles_of(std::span<const Part> parts, std::span<const Part> labels, bool left_only) const;
 
