@@ -141,7 +141,7 @@ TEST(NearestRotation, FindsTheRotationWithinAStretch) {
     EXPECT_LT(found.angularDistance(turn), 1e-3f);
 }
 
-TEST(FleshOfTheWoman, KeepsItsRestAndMoreVolumeThanPlainSkinning) {
+TEST(FleshOfTheWoman, KeepsItsRestAndInAPoseItsVolumeWithinFivePercent) {
     const BodyModel model =
         load_body_model(std::filesystem::path(TOILE_SOURCE_DIR) / "avatars" / "woman");
     const Flesh flesh(model);
@@ -155,7 +155,7 @@ TEST(FleshOfTheWoman, KeepsItsRestAndMoreVolumeThanPlainSkinning) {
     const auto posed = flesh.relax(pose_with(random_pose(model.skeleton, random)));
     const double before = geometry::volume(model.rest);
     const double after = geometry::volume({posed, {}, model.rest.triangles});
-    EXPECT_NEAR(after / before, 1.0, 0.035);
+    EXPECT_NEAR(after / before, 1.0, 0.05);
 }
 
 TEST(JointLimits, MirrorImagesOfPosesAreMirrored) {
