@@ -2,6 +2,7 @@
 
 #include "apps/commands.h"
 #include "body/body_from_numbers.h"
+#include "body/measurer.h"
 #include "body/pose_training.h"
 #include "body/space_training.h"
 #include "core/bytes.h"
@@ -111,9 +112,14 @@ struct NewBody {
 void make_new(const NewBody& wish, const std::vector<std::string>& words) {
     const body::NamedLengths wanted = parse_measurements(words);
     const auto space = body::BodySpace::load(body::find_avatar(wish.model));
+    std::vector<std::string> names;
+    for (const auto& [name, metres] : wanted)
+        names.push_back(name);
     const auto made =
         body::body_from_numbers(space, wish.sex == "female" ? body::Sex::female : body::Sex::male,
-                                wanted, body::measure_by_landmarks(space.model()));
+                                wanted, body::measure_by_definitions(space.model(), names));
+    const body::BodyShape shape =
+        space.shape({made.coefficients.data(), static_cast<std::size_t>(made.coefficients.size())});
     nlohmann::ordered_json json;
     json["schema"] = 1;
     json["model"] = space.model().id;
@@ -121,8 +127,10 @@ void make_new(const NewBody& wish, const std::vector<std::string>& words) {
     json["made_by"] = "measurements";
     json["sex"] = wish.sex;
     json["coefficients"] = std::vector<double>(made.coefficients.begin(), made.coefficients.end());
-    for (const auto& [name, metres] : made.measurements)
-        json["measurements"][name] = {{"value", metres}, {"confidence", 1.0}};
+    for (const body::Measurement& m :
+         body::Measurer(space.model()).measure(shape.positions, shape.skeleton))
+        json["measurements"][std::string(m.name)] = {{"value", m.value_m},
+                                                     {"confidence", m.confidence}};
     write_text(wish.out, json.dump(2) + "\n");
     for (const auto& [name, metres] : wanted)
         std::cout << name << " " << made.measurements.at(name) << " m (wanted " << metres << ")\n";

@@ -138,7 +138,8 @@ WalkPoint SurfaceWalk::walk(std::span<const Vec4f> positions, const Vec4f& p, st
                (positions[corner[1]] - at).dot(towards) > 0.0f ||
                (positions[corner[2]] - at).dot(towards) > 0.0f;
     };
-    for (int step = 0; step < kMostSteps && feature != kFace && best.triangle != kNoTriangle; ++step) {
+    for (int step = 0; step < kMostSteps && feature != kFace && best.triangle != kNoTriangle;
+         ++step) {
         const std::uint32_t from = best.triangle;
         // A neighbour is nearer only if it leads from the nearest point towards p.
         const Vec4f at = best.point;

@@ -33,8 +33,8 @@ class SurfaceWalk {
     /// Goes downhill from `start` over triangles of the groups in `allowed`: the nearest point
     /// within reach of a descent, which is the nearest one when `start` is close to it.
     [[nodiscard]] WalkPoint walk(std::span<const Vec4f> positions, const Vec4f& p,
-                                 std::uint32_t start, GroupMask allowed = ~GroupMask{0}) const
-        noexcept;
+                                 std::uint32_t start,
+                                 GroupMask allowed = ~GroupMask{0}) const noexcept;
 
     [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_; }
     [[nodiscard]] std::uint8_t group_of(std::uint32_t triangle) const noexcept {
