@@ -41,8 +41,9 @@ void check(const BodyRest& rest) {
     }
 }
 
-/// The joint that moves each triangle most. (nf)
+/// The joint that moves each triangle most. (nf) \throw Error when the body is unfit
 std::vector<std::uint8_t> triangle_joints(const BodyRest& rest) {
+    check(rest);
     std::vector<std::uint8_t> joints(rest.triangles.size());
     for (std::size_t t = 0; t < joints.size(); ++t) {
         std::array<float, kBodyJoints> sum{};
@@ -60,7 +61,7 @@ std::vector<std::uint8_t> triangle_joints(const BodyRest& rest) {
 } // namespace
 
 MovingBody::MovingBody(const BodyRest& rest)
-    : surface_((check(rest), rest.triangles), rest.positions.size(), triangle_joints(rest)) {
+    : surface_(rest.triangles, rest.positions.size(), triangle_joints(rest)) {
     const std::size_t count = rest.positions.size();
     std::vector<std::uint8_t> vertex_joint(count, 0);
     for (std::size_t v = 0; v < count; ++v) {

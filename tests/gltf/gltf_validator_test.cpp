@@ -42,6 +42,21 @@ class GltfValidator : public testing::Test {
     }
 };
 
+/// Normal maps leave the tangents to the viewer (MikkTSpace), as glTF allows.
+constexpr const char* kTangents = "MESH_PRIMITIVE_GENERATED_TANGENT_SPACE";
+
+/// The lines of a verdict but for warnings of one kind.
+std::string faults_but(const std::string& warning, const std::string& text) {
+    std::string faults;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string line = text.substr(begin, end - begin);
+        if (line.find("warning " + warning) == std::string::npos) faults += line + "\n";
+        begin = end + 1;
+    }
+    return faults;
+}
+
 TEST_F(GltfValidator, FindsAFault) {
     const test::TemporaryFolder folder;
     Scene scene = test::everything();
@@ -89,13 +104,7 @@ TEST_F(GltfValidator, PassesReexportsOfSharedSkins) {
     const Verdict verdict = validate(exported);
     ASSERT_LE(verdict.status, 1) << verdict.text;
     // Files may hang a skinned mesh below other nodes; that warning is theirs and is kept.
-    std::string faults;
-    for (std::size_t begin = 0; begin < verdict.text.size();) {
-        const std::size_t end = std::min(verdict.text.find('\n', begin), verdict.text.size());
-        const std::string line = verdict.text.substr(begin, end - begin);
-        if (line.find("warning NODE_SKINNED_MESH") == std::string::npos) faults += line + "\n";
-        begin = end + 1;
-    }
+    const std::string faults = faults_but("NODE_SKINNED_MESH", verdict.text);
     EXPECT_EQ(faults, "");
 }
 
@@ -108,7 +117,8 @@ TEST_F(GltfValidator, PassesTheAvatarsAndGarmentsOfTheRepository) {
     std::sort(files.begin(), files.end());
     ASSERT_GE(files.size(), 9u);
     const Verdict verdict = validate(files);
-    EXPECT_EQ(verdict.status, 0) << verdict.text;
+    ASSERT_LE(verdict.status, 1) << verdict.text;
+    EXPECT_EQ(faults_but(kTangents, verdict.text), "");
 }
 
 TEST_F(GltfValidator, PassesADressedLook) {
@@ -119,7 +129,8 @@ TEST_F(GltfValidator, PassesADressedLook) {
                          "--glb", (folder / "look.glb").string()});
     ASSERT_EQ(tryon.status, 0) << tryon.output;
     const Verdict verdict = validate({folder / "look.glb"});
-    EXPECT_EQ(verdict.status, 0) << verdict.text;
+    ASSERT_LE(verdict.status, 1) << verdict.text;
+    EXPECT_EQ(faults_but(kTangents, verdict.text), "");
 }
 
 } // namespace
