@@ -89,7 +89,7 @@ Vec2f facing(const FoundLegs& legs, std::vector<std::string>& notes) {
     Vec2f seat = breadth_axis(legs.seat);
     if (seat.dot(across) < 0.0f) seat = -seat;
     across = (across + seat).normalized();
-    Vec2f ahead(-across.y(), across.x());
+    const Vec2f ahead(-across.y(), across.x());
     float feet = 0.0f;
     for (const FoundLeg& leg : legs.legs)
         feet += ahead.dot(leg.toe - leg.near(leg.thinnest).centroid);
