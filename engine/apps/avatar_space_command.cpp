@@ -8,7 +8,6 @@
 #include "core/bytes.h"
 #include "core/log.h"
 
-#include <charconv>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -87,30 +86,17 @@ void add_train_pose(CLI::App& group) {
     });
 }
 
-/// "--waist_girth 0.72 --stature 1.70" as numbers.
-body::NamedLengths parse_measurements(const std::vector<std::string>& words) {
-    body::NamedLengths out;
-    for (std::size_t i = 0; i < words.size(); i += 2) {
-        if (!words[i].starts_with("--") || i + 1 == words.size())
-            throw UsageError("'" + words[i] + "': measurements are given as --waist_girth 0.72");
-        double value = 0.0;
-        const std::string& text = words[i + 1];
-        const auto end = text.data() + text.size();
-        if (std::from_chars(text.data(), end, value).ptr != end || !(value > 0.0) || value > 10.0)
-            throw UsageError(words[i] + " " + text + ": must be metres between 0 and 10");
-        if (!out.emplace(words[i].substr(2), value).second)
-            throw UsageError(words[i] + " is given twice");
-    }
-    return out;
-}
-
 struct NewBody {
     std::string model = "adult", sex;
     std::filesystem::path out;
+    body::NamedLengths wanted; ///< 0: not asked for
 };
 
-void make_new(const NewBody& wish, const std::vector<std::string>& words) {
-    const body::NamedLengths wanted = parse_measurements(words);
+void make_new(const NewBody& wish) {
+    body::NamedLengths wanted = wish.wanted;
+    std::erase_if(wanted, [](const auto& asked) { return asked.second == 0.0; });
+    if (wanted.empty())
+        throw UsageError("avatar new: name at least one measurement: --stature 1.68");
     const auto space = body::BodySpace::load(body::find_avatar(wish.model));
     std::vector<std::string> names;
     for (const auto& [name, metres] : wanted)
@@ -148,8 +134,14 @@ void add_new(CLI::App& group) {
         ->check(CLI::IsMember({"female", "male"}));
     command->add_option("--model", wish->model, "The body space")->capture_default_str();
     command->add_option("--out", wish->out, "Gets the body")->required()->type_name("body.json");
-    command->allow_extras();
-    command->callback([command, wish] { make_new(*wish, command->remaining()); });
+    for (const body::MeasurementDefinition& definition : body::measurement_definitions()) {
+        const std::string name(definition.name);
+        command->add_option("--" + name, wish->wanted[name], std::string(definition.text))
+            ->check(CLI::Range(0.01, 10.0))
+            ->type_name("METRES")
+            ->group("Measurements");
+    }
+    command->callback([wish] { make_new(*wish); });
 }
 
 } // namespace
