@@ -78,6 +78,14 @@ float signed_distance(const MovingBody& body, const Vec4& p, const SurfacePoint&
     return (p - at.point).dot(body.normal_at(at));
 }
 
+/// Does the other place push the cloth away from its own? A hand that got beneath a skirt must not
+/// carry it off; one over it presses it to the thigh. Cloth far from its own place says nothing.
+bool lifts(const MovingBody& body, const SurfacePoint& own, const SurfacePoint& other) {
+    constexpr float kAway = 0.3f; // cosine
+    constexpr float kWorn = 0.2f; // m
+    return own.squared < kWorn * kWorn && body.normal_at(own).dot(body.normal_at(other)) > kAway;
+}
+
 } // namespace
 
 const Contacts::Plane Contacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), Vec4::Zero()};
@@ -203,7 +211,8 @@ void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sa
             own = found;
         } else if (found.squared < other.squared &&
                    (found.point - own.point).squaredNorm() > kApart * kApart &&
-                   signed_distance(body, p, found) > kOutside) {
+                   signed_distance(body, p, found) > kOutside &&
+                   (covers || !lifts(body, own, found))) {
             other = found;
         }
     }
@@ -231,7 +240,8 @@ void Contacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t s
         body.walk(p, other_triangle_[sample], mask_for(sample, body, other_triangle_[sample]));
     const float forget = 2.0f * settings.reach + body.velocity_at(other).norm() * period;
     const bool gone = other.squared > forget * forget && signed_distance(body, p, other) > 0.0f;
-    if (gone || other.triangle == own.triangle || other.triangle == kNone) {
+    if (gone || other.triangle == own.triangle || other.triangle == kNone ||
+        (((mask_[sample] >> body.joint_of(other.triangle)) & 1u) == 0 && lifts(body, own, other))) {
         other_triangle_[sample] = kNone;
         return;
     }

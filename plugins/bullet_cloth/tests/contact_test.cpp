@@ -126,6 +126,41 @@ TEST(Contact, AFastArmDoesNotPass) {
     EXPECT_GT(front, 0.1f);
 }
 
+// A hand between a skirt and the thigh is drawn out upwards: the skirt stays down.
+TEST(Contact, AHandBeneathTheClothDoesNotCarryItOff) {
+    const float radius = 0.03f;
+    Mesh hand = capsule({-0.1f, 0.85f, 0.13f}, 0.2f, radius); // lies across, in front of the thigh
+    hand.bind_to(8);
+    Mesh thigh = sphere({0.0f, 0.8f, 0.0f}, 0.1f);
+    const std::size_t first = thigh.positions.size();
+    thigh.join(hand);
+    Mesh apron = sheet({-0.15f, 0.6f, 0.17f}, {0.3f, 0, 0}, {0, 0.4f, 0}, 20, 26);
+    std::vector<float> held(apron.positions.size(), 0.0f);
+    std::fill(held.end() - 21, held.end(), 1.0f);
+    Stage stage(thigh, apron, {}, {}, held);
+    std::vector<Vec3f> body = thigh.positions;
+    for (int i = 0; i < 10; ++i) {
+        ASSERT_EQ(stage.step_to(body), StepResult::ok);
+    }
+    for (int i = 0; i < 20; ++i) { // outwards and up, to above where the apron is held
+        for (std::size_t v = first; v < body.size(); ++v) {
+            body[v] += Vec3f(0.0f, 0.015f, 0.01f);
+        }
+        ASSERT_EQ(stage.step_to(body), StepResult::ok);
+    }
+    for (int i = 0; i < 15; ++i) {
+        ASSERT_EQ(stage.step_to(body), StepResult::ok);
+    }
+    float lowest = 1.0f;
+    for (const Vec3f& p : stage.positions) {
+        lowest = std::min(lowest, p.y());
+    }
+    EXPECT_LT(lowest, 0.62f);
+    for (const Vec3f& p : stage.positions) {
+        EXPECT_LT(p.z(), 0.27f) << "carried off at " << p.transpose();
+    }
+}
+
 TEST(Contact, StartInsideTheBodyRecovers) {
     const Vec3f centre(0, 1, 0);
     // A tube that fits an 18 cm body, put over one of 20 cm.
