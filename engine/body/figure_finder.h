@@ -1,5 +1,6 @@
 // Finds landmarks and parts on any closed, upright body surface by its shape alone. A fitted model
 // (body/measurer.h) knows them better; this serves where none is fitted.
+// Unfinished: chest, neck and arms are not found exactly, and the confidence does not say so yet.
 #pragma once
 
 #include "body/figure.h"

@@ -28,7 +28,7 @@ LayerOffset::LayerOffset(const LayerSurface& inner, const LayerSurface& outer)
     : walk_(inner.triangles, inner.positions.size()),
       around_(geometry::vertex_adjacency(outer.positions.size(), outer.triangles)),
       inner_(inner.positions.size()), moved_(outer.positions.size()),
-      spread_(outer.positions.size()) {
+      spread_(outer.positions.size()), share_(outer.positions.size()) {
     const geometry::NearestSurface surface(inner.positions, inner.triangles);
     const auto add = [&](const std::array<std::uint32_t, 3>& vertices, std::uint32_t count) {
         const auto found = surface.nearest(mean(vertices, count, outer.positions), kReach_m);
@@ -95,16 +95,20 @@ void LayerOffset::apply(std::span<const Vec3f> inner, std::span<const Vec3f> inn
                         float gap_m, std::span<Vec3f> outer) noexcept {
     for (std::size_t v = 0; v < inner.size(); ++v)
         inner_[v] << inner[v], 0.0f;
-    for (std::size_t s = 0; s < samples_.size(); ++s)
-        planes_[s] = plane_beneath(mean(samples_[s].vertices, samples_[s].count, outer),
-                                   inner_normals, samples_[s]);
+    std::fill(share_.begin(), share_.end(), 0.0f);
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+        Sample& sample = samples_[s];
+        planes_[s] =
+            plane_beneath(mean(sample.vertices, sample.count, outer), inner_normals, sample);
+        if (sample.count == 1) share_[sample.vertices[0]] = planes_[s].weight;
+    }
     std::fill(moved_.begin(), moved_.end(), Vec3f::Zero());
     for (int round = 0; round < kRounds; ++round) {
         if (round > 0) spread();
         push_out(gap_m, outer);
     }
     for (std::size_t v = 0; v < outer.size(); ++v)
-        outer[v] += moved_[v];
+        outer[v] += share_[v] * moved_[v];
 }
 
 } // namespace toile::garment

@@ -28,7 +28,7 @@ class LayerOffset {
 
     /// Moves outer vertices (no) so that its samples lie at least `gap_m` outside the inner
     /// garment, and their surroundings with them, so that no dent shows. Beside the inner one's
-    /// borders the push fades out over 6 cm. `inner` and unit
+    /// borders the push fades out over 6 cm; what lies beyond stays where it is. `inner` and unit
     /// `inner_normals` (ni) as they are now. Allocates nothing. [frame]
     void apply(std::span<const Vec3f> inner, std::span<const Vec3f> inner_normals, float gap_m,
                std::span<Vec3f> outer) noexcept;
@@ -61,6 +61,7 @@ class LayerOffset {
     std::vector<Sample> samples_;       ///< centres, then vertices
     std::vector<Plane> planes_;         ///< (samples)
     std::vector<Vec3f> moved_, spread_; ///< (no) this frame's push
+    std::vector<float> share_; ///< (no) of its push that a vertex takes: 0 beyond the inner garment
 };
 
 } // namespace toile::garment
