@@ -1,8 +1,8 @@
 // One simulated depth camera: from what its rays meet to what it reports.
 #pragma once
 
+#include "core/row_loop.h"
 #include "simulated_sensor/camera_model.h"
-#include "simulated_sensor/parallel.h"
 #include "simulated_sensor/pixel_random.h"
 #include "simulated_sensor/stage.h"
 

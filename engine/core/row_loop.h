@@ -1,11 +1,11 @@
-// Loops over rows: on the host's threads in the plugin, serial in small programs.
+// Loops over rows: on the host's threads in a plugin, serial in small programs.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <functional>
 
-namespace toile::simulated_sensor {
+namespace toile {
 
 /// Calls body(begin, end) over ranges that cover [0, count) and depend on count and grain only.
 using RowLoop = std::function<void(std::uint32_t count, std::uint32_t grain,
@@ -16,4 +16,4 @@ inline void serial_rows(std::uint32_t count, std::uint32_t,
     body(0, count);
 }
 
-} // namespace toile::simulated_sensor
+} // namespace toile

@@ -1,0 +1,244 @@
+#include "scape_fit/fit_solver.h"
+
+#include "body/joint_limits.h"
+#include "body/rotations.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace toile::scape_fit {
+namespace {
+
+using body::Joint;
+using body::kJointCount;
+
+constexpr std::uint32_t kGrain = 512;
+constexpr double kBeyondLimit = 2.0 * M_PI / 180.0; // radians: deviation past a joint's limit
+constexpr double kLeastRange = 4.0 * M_PI / 180.0;
+constexpr double kMostTurn = 0.35; // radians and ...
+constexpr double kMostShape = 1.5; // ... deviations a step
+
+Eigen::Matrix3d cross_matrix(const Vec3d& v) {
+    Eigen::Matrix3d m;
+    m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+    return m;
+}
+
+Eigen::Matrix3d exponential(const Vec3d& turn) {
+    const double angle = turn.norm();
+    if (angle < 1e-12) return Eigen::Matrix3d::Identity();
+    return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+}
+
+/// How the rotation vector r of q changes with a small turn before q.
+Eigen::Matrix3d log_derivative(const Vec3d& r) {
+    const double angle = r.norm();
+    const Eigen::Matrix3d cross = cross_matrix(r);
+    const double factor =
+        angle < 1e-3 ? 1.0 / 12.0
+                     : 1.0 / (angle * angle) -
+                           (1.0 + std::cos(angle)) / (2.0 * angle * std::sin(angle));
+    return Eigen::Matrix3d::Identity() - 0.5 * cross + factor * cross * cross;
+}
+
+} // namespace
+
+Vec3f CameraCorrection::apply(const Vec3f& point, const Vec3f& place) const {
+    const Vec3d local = (point - place).cast<double>();
+    return place + (shift + exponential(turn) * (scale * local)).cast<float>();
+}
+
+FitSolver::FitSolver(const FitModel& model) : model_(model) {
+    for (std::size_t s = 0; s < body::kSexes.size(); ++s) {
+        const body::CoefficientPrior& prior = model.space().prior(body::kSexes[s]);
+        populations_[s].mean = prior.mean;
+        populations_[s].precision = prior.covariance.inverse();
+        const Eigen::VectorXd diagonal = prior.covariance.llt().matrixLLT().diagonal();
+        populations_[s].log_determinant = 2.0 * diagonal.array().log().sum();
+    }
+    const body::Skeleton& skeleton = model.space().model().skeleton;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+        const auto joint = static_cast<Joint>(j);
+        axes_[j] = Mat3f::Identity();
+        const body::JointLimits limits = body::joint_limits(joint);
+        for (int k = 0; k < 3; ++k) {
+            const float high = limits.range[static_cast<std::size_t>(k)].high;
+            if (high <= 0.0f) continue;
+            axes_[j].col(k) = body::limited_rotation(skeleton, joint, Vec3f::Unit(k)) / high;
+        }
+    }
+}
+
+double FitSolver::unlikeliness(const ShapeVector& shape, body::Sex sex) const {
+    const Population& population = populations_[sex == body::kSexes[0] ? 0 : 1];
+    const ShapeVector off = shape - population.mean;
+    return off.dot(population.precision * off) + population.log_determinant;
+}
+
+int FitSolver::pose_at(std::size_t instant) const {
+    return model_.component_count() + kPoseUnknowns * static_cast<int>(instant);
+}
+
+int FitSolver::camera_at(const FitState& state, std::size_t camera) const {
+    return pose_at(state.poses.size()) + kCameraUnknowns * static_cast<int>(camera);
+}
+
+void FitSolver::add_pairs(const FitLevel& level, std::span<const PosedLevel> posed,
+                          const AssociatedView& view, const FitState& state,
+                          const RowLoop& rows) {
+    const auto& pairs = view.association->pairs;
+    const int k = model_.component_count();
+    const bool has_camera = view.camera < state.cameras.size() && view.eye;
+    const int width = k + kPoseUnknowns + (has_camera ? kCameraUnknowns : 0);
+    const auto count = static_cast<std::uint32_t>((pairs.size() + kGrain - 1) / kGrain);
+    partial_.resize(std::max<std::size_t>(partial_.size(), count));
+    const auto information =
+        static_cast<float>(1.0 / (kPatchArea * kModelDeviation * kModelDeviation));
+    const auto sum_range = [&](std::uint32_t range) {
+        const std::size_t begin = std::size_t{range} * kGrain;
+        const std::size_t end = std::min(pairs.size(), begin + kGrain);
+        ShapeRows block(static_cast<int>(end - begin), width + 1);
+        for (std::size_t i = begin; i < end; ++i) {
+            const VertexPair& pair = pairs[i];
+            const auto at = static_cast<int>(i - begin);
+            float* row = block.row(at).data();
+            motion_row(model_, level, posed[view.instant], pair.vertex, pair.normal, row);
+            if (has_camera) {
+                const Vec3f arm = pair.place - *view.eye;
+                Eigen::Map<Eigen::Matrix<float, kCameraUnknowns, 1>> camera(row + k +
+                                                                            kPoseUnknowns);
+                camera << -arm.cross(pair.normal), -pair.normal, -pair.normal.dot(arm);
+            }
+            row[width] = pair.distance;
+            block.row(at) *= std::sqrt(pair.weight * information);
+        }
+        partial_[range].setZero(width + 1, width + 1);
+        partial_[range].selfadjointView<Eigen::Lower>().rankUpdate(block.transpose());
+    };
+    rows(count, 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t range = begin; range < end; ++range)
+            sum_range(range);
+    });
+    Eigen::MatrixXd total = Eigen::MatrixXd::Zero(width + 1, width + 1);
+    for (std::uint32_t range = 0; range < count; ++range)
+        total += partial_[range].cast<double>();
+    total = Eigen::MatrixXd(total.selfadjointView<Eigen::Lower>());
+    // Where the blocks of shape, pose and camera stand among all unknowns.
+    const std::array<std::array<int, 3>, 3> parts{{{0, 0, k},
+                                                   {k, pose_at(view.instant), kPoseUnknowns},
+                                                   {k + kPoseUnknowns,
+                                                    has_camera ? camera_at(state, view.camera) : 0,
+                                                    has_camera ? kCameraUnknowns : 0}}};
+    for (const auto& [from, to, size] : parts) {
+        gradient_.segment(to, size) += total.block(from, width, size, 1);
+        for (const auto& [from2, to2, size2] : parts)
+            normal_.block(to, to2, size, size2) += total.block(from, from2, size, size2);
+    }
+}
+
+void FitSolver::add_shape_prior(const FitPriors& priors, const FitState& state) {
+    const int k = model_.component_count();
+    if (priors.sex) {
+        const Population& population = populations_[*priors.sex == body::kSexes[0] ? 0 : 1];
+        normal_.topLeftCorner(k, k) += priors.shape_weight * population.precision;
+        gradient_.head(k) +=
+            priors.shape_weight * (population.precision * (state.shape.coefficients - population.mean));
+    } else {
+        normal_.topLeftCorner(k, k).diagonal().array() += priors.shape_weight;
+        gradient_.head(k) += priors.shape_weight * state.shape.coefficients;
+    }
+}
+
+void FitSolver::add_pose_prior(const FitPriors& priors, const FitState& state) {
+    for (std::size_t f = 0; f < state.poses.size(); ++f)
+        for (std::size_t j = 1; j < kJointCount; ++j) {
+            const Vec3d turn = body::rotation_vector(state.poses[f].rotations[j]).cast<double>();
+            const Eigen::Matrix3d inverse = axes_[j].cast<double>().inverse();
+            const Eigen::Matrix3d derivative = inverse * log_derivative(turn);
+            const Vec3d angle = inverse * turn;
+            const body::JointLimits limits = body::joint_limits(static_cast<Joint>(j));
+            const int at = pose_at(f) + 3 + 3 * static_cast<int>(j);
+            for (int a = 0; a < 3; ++a) {
+                const body::AngleRange& range = limits.range[static_cast<std::size_t>(a)];
+                const double half =
+                    std::max(kLeastRange, 0.5 * (static_cast<double>(range.high) - range.low));
+                double weight = priors.pose_weight / (half * half);
+                double pull = weight * angle[a];
+                const double beyond = angle[a] > range.high  ? angle[a] - range.high
+                                      : angle[a] < range.low ? angle[a] - range.low
+                                                             : 0.0;
+                if (beyond != 0.0) {
+                    const double hard = 1.0 / (kBeyondLimit * kBeyondLimit);
+                    weight += hard;
+                    pull += hard * beyond;
+                }
+                const Eigen::RowVector3d row = derivative.row(a);
+                normal_.block<3, 3>(at, at) += weight * row.transpose() * row;
+                gradient_.segment<3>(at) += pull * row.transpose();
+            }
+        }
+}
+
+void FitSolver::add_camera_prior(const FitPriors& priors, const FitState& state) {
+    const auto stiffness = [](double deviation) {
+        return deviation > 0.0 ? 1.0 / (deviation * deviation) : 1e12;
+    };
+    for (std::size_t c = 0; c < state.cameras.size(); ++c) {
+        const CameraCorrection& camera = state.cameras[c];
+        Eigen::Matrix<double, kCameraUnknowns, 1> weight, off;
+        weight << Vec3d::Constant(stiffness(priors.camera.turn_rad)),
+            Vec3d::Constant(stiffness(priors.camera.shift_m)), stiffness(priors.camera.scale);
+        off << camera.turn, camera.shift, camera.scale - 1.0;
+        const int at = camera_at(state, c);
+        normal_.diagonal().segment<kCameraUnknowns>(at) += weight;
+        gradient_.segment<kCameraUnknowns>(at) += weight.cwiseProduct(off);
+    }
+}
+
+double FitSolver::step(const FitLevel& level, std::span<const PosedLevel> posed,
+                       std::span<const AssociatedView> views, const FitPriors& priors,
+                       double damping, const RowLoop& rows, FitState& state) {
+    const int size = camera_at(state, state.cameras.size());
+    normal_.setZero(size, size);
+    gradient_.setZero(size);
+    for (const AssociatedView& view : views)
+        add_pairs(level, posed, view, state, rows);
+    add_shape_prior(priors, state);
+    add_pose_prior(priors, state);
+    add_camera_prior(priors, state);
+    normal_.diagonal() *= 1.0 + damping;
+    normal_.diagonal().array() += 1e-6;
+    const int k = model_.component_count();
+    if (priors.fix_shape) {
+        normal_.topRows(k).setZero();
+        normal_.leftCols(k).setZero();
+        normal_.topLeftCorner(k, k).setIdentity();
+        gradient_.head(k).setZero();
+    }
+    Eigen::VectorXd move = -normal_.ldlt().solve(gradient_);
+    double most_turn = 0.0;
+    for (std::size_t f = 0; f < state.poses.size(); ++f) {
+        auto turns = move.segment(pose_at(f) + 3, kPoseUnknowns - 3);
+        const double largest = turns.cwiseAbs().maxCoeff();
+        if (largest > kMostTurn) move.segment(pose_at(f), kPoseUnknowns) *= kMostTurn / largest;
+        most_turn = std::max(most_turn, std::min(largest, kMostTurn));
+    }
+    const double reshape = move.head(k).cwiseAbs().maxCoeff();
+    if (reshape > kMostShape) move.head(k) *= kMostShape / reshape;
+    state.shape.coefficients += move.head(k);
+    for (std::size_t f = 0; f < state.poses.size(); ++f)
+        state.poses[f] = moved_pose(state.poses[f], move.data() + pose_at(f));
+    for (std::size_t c = 0; c < state.cameras.size(); ++c) {
+        const double* m = move.data() + camera_at(state, c);
+        CameraCorrection& camera = state.cameras[c];
+        const Eigen::AngleAxisd turned(exponential(Eigen::Map<const Vec3d>(m)) *
+                                       exponential(camera.turn));
+        camera.turn = turned.angle() * turned.axis();
+        camera.shift += Eigen::Map<const Vec3d>(m + 3);
+        camera.scale *= 1.0 + m[6];
+    }
+    return most_turn;
+}
+
+} // namespace toile::scape_fit

@@ -1,0 +1,248 @@
+#include "scape_fit/fitter.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace toile::scape_fit {
+
+/// Some rounds at one level, reach and scale shrinking from first to last.
+struct Fitter::Stage {
+    std::size_t level = 0;
+    int rounds = 0;
+    std::array<float, 2> reach_m{};
+    std::array<float, 2> scale_m{};
+    float empty_weight = 0.3f;
+    bool along_rays = false;
+    bool fix_shape = false;
+    bool free_form = false;
+    double damping = 1e-3;
+    double from = 0.0, to = 1.0; ///< of the whole fit, for progress
+};
+
+namespace {
+
+constexpr std::size_t kStartPoints = 400;
+constexpr std::size_t kStarts = 6;
+constexpr std::size_t kCoarsePoints = 3000;
+constexpr std::size_t kMediumPoints = 16000;
+constexpr float kFootReach = 0.05f;   // metres: a higher foot is lifted
+constexpr float kFootWeight = 0.004f; // m^2 that a sole counts as
+
+/// Every n-th point, areas made up for it.
+Observation fewer(const Observation& from, std::size_t count) {
+    if (from.points.size() <= count) return from;
+    Observation out;
+    out.instant = from.instant;
+    out.camera = from.camera;
+    out.eye = from.eye;
+    out.view = from.view;
+    out.complete = from.complete;
+    const double step = static_cast<double>(from.points.size()) / static_cast<double>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto at = static_cast<std::size_t>(static_cast<double>(i) * step);
+        out.points.push_back(from.points[at]);
+        if (!from.normals.empty()) out.normals.push_back(from.normals[at]);
+        out.areas.push_back(from.areas[at] * static_cast<float>(step));
+    }
+    return out;
+}
+
+std::vector<Observation> fewer(std::span<const Observation> all, std::size_t count) {
+    std::vector<Observation> out;
+    for (const Observation& one : all)
+        out.push_back(fewer(one, count / all.size()));
+    return out;
+}
+
+float between(const std::array<float, 2>& ends, float at) {
+    return ends[0] * std::pow(ends[1] / ends[0], at);
+}
+
+/// Root mean square distance with all that has no partner counted as `far`.
+double cost(std::span<const Association> associations, double far) {
+    double squares = 0.0, area = 0.0;
+    for (const Association& a : associations) {
+        squares += a.squares + (a.observed_area - a.paired_area) * far * far;
+        area += a.observed_area;
+    }
+    return std::sqrt(squares / std::max(area, 1e-9));
+}
+
+/// Feet that are near the floor stand on it, and nothing is below.
+void stand_on(const FitLevel& level, const PosedLevel& posed, const geometry::Plane& floor,
+              Association& out) {
+    out.pairs.clear();
+    std::array<VertexPair, 2> lowest;
+    for (VertexPair& pair : lowest)
+        pair.distance = kFootReach;
+    for (std::uint32_t v = 0; v < level.vertices.size(); ++v) {
+        VertexPair pair;
+        pair.vertex = v;
+        pair.normal = floor.normal;
+        pair.distance = floor.normal.dot(posed.positions[v]) - floor.offset;
+        pair.weight = kFootWeight;
+        for (std::size_t side = 0; side < 2; ++side) {
+            const auto foot = static_cast<std::size_t>(side == 0 ? body::Joint::left_foot
+                                                                 : body::Joint::right_foot);
+            if (level.below[v][foot] > 0.5f && pair.distance < lowest[side].distance)
+                lowest[side] = pair;
+        }
+    }
+    for (const VertexPair& pair : lowest)
+        if (pair.weight > 0.0f && pair.distance > -2.0f * kFootReach) out.pairs.push_back(pair);
+}
+
+} // namespace
+
+void Fitter::refine(std::span<const Observation> observations, const Stage& stage,
+                    const FitOptions& options, const RowLoop& rows, FitResult& result) {
+    const FitLevel& level = model_.level(stage.level);
+    FitState& state = result.state;
+    std::vector<ObservedPoints> observed;
+    for (const Observation& one : observations)
+        observed.emplace_back(one);
+    std::vector<PosedLevel> posed(state.poses.size());
+    std::vector<Associator> associators;
+    for (std::size_t f = 0; f < state.poses.size(); ++f)
+        associators.emplace_back(level);
+    std::vector<Association> associations(observed.size()), contacts(posed.size());
+    for (int round = 0; round <= stage.rounds; ++round) {
+        const float at = stage.rounds > 1 ? std::min(1.0f, static_cast<float>(round) /
+                                                               static_cast<float>(stage.rounds - 1))
+                                          : 1.0f;
+        AssociationOptions pairing;
+        pairing.reach_m = between(stage.reach_m, at);
+        pairing.scale_m = between(stage.scale_m, at);
+        pairing.along_rays = stage.along_rays;
+        pairing.empty_weight = stage.empty_weight;
+        for (std::size_t f = 0; f < posed.size(); ++f) {
+            pose_level(model_, level, state.shape, state.poses[f], posed[f]);
+            associators[f].set_surface(posed[f]);
+        }
+        std::vector<AssociatedView> views;
+        for (std::size_t i = 0; i < observed.size(); ++i) {
+            ObservedPoints& points = observed[i];
+            const Observation& seen = points.observation;
+            if (seen.eye && seen.camera < state.cameras.size()) {
+                const CameraCorrection& camera = state.cameras[seen.camera];
+                for (std::size_t p = 0; p < seen.points.size(); ++p)
+                    points.points[p] = camera.apply(seen.points[p], *seen.eye);
+                points.eye = *seen.eye + camera.shift.cast<float>();
+            }
+            associators[seen.instant].associate(points, pairing, rows, associations[i]);
+            views.push_back({seen.instant, seen.camera, points.eye, &associations[i]});
+        }
+        if (options.floor) {
+            for (std::size_t f = 0; f < posed.size(); ++f)
+                stand_on(level, posed[f], *options.floor, contacts[f]);
+            for (std::size_t f = 0; f < posed.size(); ++f)
+                views.push_back({f, state.cameras.size(), std::nullopt, &contacts[f]});
+        }
+        if (round == stage.rounds) break; // the last look is for the figures
+        FitPriors priors;
+        priors.sex = result.sex == body::Sex::invalid ? options.sex : result.sex;
+        priors.shape_weight = options.shape_weight;
+        priors.fix_shape = stage.fix_shape;
+        priors.camera = options.camera;
+        solver_.step(level, posed, views, priors, stage.damping, rows, state);
+        ++result.rounds;
+        if (options.progress(stage.from + (stage.to - stage.from) * (round + 1) / stage.rounds))
+            throw Cancelled{};
+    }
+    if (stage.free_form) {
+        std::vector<const PosedLevel*> surfaces;
+        std::vector<const Association*> pairs;
+        for (std::size_t i = 0; i < observed.size(); ++i) {
+            surfaces.push_back(&posed[observed[i].observation.instant]);
+            pairs.push_back(&associations[i]);
+        }
+        free_form_.solve(surfaces, pairs, options.free_form, state.shape.offsets);
+    }
+    result.rms_m = cost(associations, stage.reach_m[1]);
+    double observed_area = 0.0, paired = 0.0;
+    for (const Association& a : associations) {
+        observed_area += a.observed_area;
+        paired += a.paired_area;
+    }
+    result.paired_share = paired / std::max(observed_area, 1e-9);
+}
+
+FitResult Fitter::fit(std::span<const Observation> observations, const FitOptions& options,
+                      const RowLoop& rows) {
+    std::size_t instants = 0, cameras = 0, first_points = 0;
+    bool depth = false;
+    for (const Observation& one : observations) {
+        if (one.points.empty()) throw Error("an observation without points");
+        instants = std::max(instants, one.instant + 1);
+        if (one.eye) cameras = std::max(cameras, one.camera + 1);
+        depth = depth || one.eye.has_value();
+        if (one.instant == 0) first_points += one.points.size();
+    }
+    if (instants == 0) throw Error("nothing was observed");
+
+    // Start each instant on its own, from the best bodies of the library.
+    const auto coarse_points = fewer(observations, kCoarsePoints * instants);
+    const std::size_t coarse = model_.level_count() - 1;
+    FitResult result;
+    for (std::size_t f = 0; f < instants; ++f) {
+        std::vector<Observation> of_instant;
+        std::vector<Vec3f> points;
+        for (const Observation& one : coarse_points) {
+            if (one.instant != f) continue;
+            of_instant.push_back(one);
+            of_instant.back().instant = 0;
+            const std::size_t step = std::max<std::size_t>(
+                1, one.points.size() * observations.size() / (kStartPoints * instants));
+            for (std::size_t i = 0; i < one.points.size(); i += step)
+                points.push_back(one.points[i]);
+        }
+        FitResult best;
+        best.rms_m = 1e9;
+        for (const Start& start : library_.find(points, options.ups, kStarts, rows)) {
+            FitResult tried;
+            tried.state.shape.coefficients = f == 0 ? start.shape : result.state.shape.coefficients;
+            tried.state.poses = {start.pose};
+            tried.state.cameras.resize(cameras);
+            FitOptions loose = options;
+            loose.camera = {};
+            Stage first{coarse, 3, {0.3f, 0.2f}, {0.15f, 0.10f}};
+            first.fix_shape = true;
+            refine(of_instant, first, loose, rows, tried);
+            Stage second{coarse, 12, {0.2f, 0.08f}, {0.10f, 0.04f}};
+            refine(of_instant, second, loose, rows, tried);
+            if (tried.rms_m < best.rms_m) best = std::move(tried);
+        }
+        if (f == 0) result = best;
+        else result.state.poses.push_back(best.state.poses.front());
+    }
+    result.sex = options.sex.value_or(solver_.unlikeliness(result.state.shape.coefficients, body::kSexes[0]) <
+                                              solver_.unlikeliness(result.state.shape.coefficients,
+                                                                   body::kSexes[1])
+                                          ? body::kSexes[0]
+                                          : body::kSexes[1]);
+    // All together, finer and finer.
+    const auto medium_points = fewer(observations, kMediumPoints * instants);
+    Stage medium{1, 10, {0.10f, 0.06f}, {0.05f, 0.03f}};
+    medium.from = 0.4, medium.to = 0.6;
+    refine(medium_points, medium, options, rows, result);
+    static const auto env = [](const char* n, double d) { const char* v = std::getenv(n); return v ? std::atof(v) : d; };
+    Stage fine{0, (int)env("FINE", 8), {0.06f, depth ? 0.06f : 0.03f}, {0.03f, depth ? 0.03f : 0.01f}};
+    fine.along_rays = depth && env("RAYS", 1) > 0;
+    fine.empty_weight = (float)env("EMPTY", 0.3);
+    fine.damping = env("DAMP", 1e-3);
+    fine.from = 0.6, fine.to = 1.0;
+    fine.free_form = options.use_free_form;
+    refine(observations, fine, options, rows, result);
+    if (options.use_free_form) {
+        Stage last = fine;
+        last.rounds = 3;
+        last.reach_m[0] = fine.reach_m[1], last.scale_m[0] = fine.scale_m[1];
+        refine(observations, last, options, rows, result);
+    }
+    return result;
+}
+
+} // namespace toile::scape_fit

@@ -1,0 +1,57 @@
+// Fits the body space to what was observed of one person: coarse to fine, robust, with priors.
+#pragma once
+
+#include "geometry/slice.h"
+#include "scape_fit/fit_solver.h"
+#include "scape_fit/free_form.h"
+#include "scape_fit/start.h"
+
+#include <functional>
+
+namespace toile::scape_fit {
+
+struct FitOptions {
+    std::optional<body::Sex> sex;    ///< none: the likelier one
+    double shape_weight = 0.02;      ///< of the prior, see FitPriors
+    CameraTrust camera;              ///< how far cameras may be corrected
+    std::optional<geometry::Plane> floor; ///< feet that are near it stand on it
+    bool dressed = false;            ///< cloth may lie between skin and points
+    bool use_free_form = true;      ///< move onto detail that the components cannot show
+    FreeFormOptions free_form;
+    std::vector<Vec3f> ups{Vec3f::UnitY()}; ///< directions that may be up
+    /// Told how far it is, [0, 1]; true: stop. The fit then throws Cancelled.
+    std::function<bool(double)> progress = [](double) { return false; };
+};
+
+struct Cancelled {};
+
+struct FitResult {
+    FitState state;
+    body::Sex sex = body::Sex::invalid;
+    double rms_m = 0.0;      ///< of the points to the surface, those that have a partner
+    double paired_share = 0; ///< of the points' area
+    double seen_share = 0.0; ///< of the body's area that points stand for
+    int rounds = 0;
+};
+
+class Fitter {
+  public:
+    explicit Fitter(const FitModel& model) : model_(model), library_(model), solver_(model), free_form_(model.level(0)) {}
+
+    /// `observations` of one person; instants and cameras are numbered from 0. \throw Error for
+    /// no points; Cancelled
+    [[nodiscard]] FitResult fit(std::span<const Observation> observations,
+                                const FitOptions& options, const RowLoop& rows = &serial_rows);
+
+  private:
+    struct Stage;
+    void refine(std::span<const Observation> observations, const Stage& stage,
+                const FitOptions& options, const RowLoop& rows, FitResult& result);
+
+    const FitModel& model_;
+    StartLibrary library_;
+    FitSolver solver_;
+    FreeForm free_form_;
+};
+
+} // namespace toile::scape_fit

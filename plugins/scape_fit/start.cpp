@@ -1,0 +1,169 @@
+#include "scape_fit/start.h"
+
+#include "body/rotations.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace toile::scape_fit {
+namespace {
+
+using body::Joint;
+using body::kDegree;
+
+constexpr float kFar = 0.15f; // metres
+constexpr int kYaws = 16;
+constexpr int kShifts = 4;
+
+/// Degrees of a left arm: the shoulder's and the upper arm's lift, the arm's way forward, and the
+/// elbow's bend. The right arm mirrors it.
+struct ArmPose {
+    float collar = 0.0f, lift = 0.0f, forward = 0.0f, elbow = 0.0f, turn = 0.0f;
+};
+constexpr std::array<ArmPose, 7> kArms{{
+    {0.0f, -38.0f, 0.0f, 10.0f, 0.0f},    // hanging
+    {0.0f, 0.0f, 0.0f, 0.0f, 0.0f},       // as at rest
+    {5.0f, 42.0f, 0.0f, 0.0f, 0.0f},      // out
+    {25.0f, 80.0f, 0.0f, 10.0f, 0.0f},    // up
+    {0.0f, -5.0f, 70.0f, 10.0f, 0.0f},    // forward
+    {0.0f, -8.0f, -15.0f, 85.0f, -50.0f}, // on the hips
+    {10.0f, 45.0f, 0.0f, 90.0f, -60.0f},  // out, forearms up
+}};
+constexpr std::array<float, 2> kLegs{0.0f, 12.0f}; // degrees apart, more than at rest
+
+body::Pose library_pose(const body::Skeleton& skeleton, const ArmPose& arm, float legs) {
+    body::Pose out;
+    const auto turn = [&](Joint joint, const Quatf& q) {
+        out.rotations[static_cast<std::size_t>(joint)] = q;
+    };
+    const auto along = [&](Joint from, Joint to) {
+        return Vec3f((skeleton.rest(to) - skeleton.rest(from)).normalized());
+    };
+    const auto both = [&](Joint left, const Quatf& q) {
+        turn(left, q);
+        turn(body::opposite_joint(left), Quatf(q.w(), q.x(), -q.y(), -q.z()));
+    };
+    const Vec3f upper = along(Joint::left_upper_arm, Joint::left_lower_arm);
+    const Vec3f lower = along(Joint::left_lower_arm, Joint::left_hand);
+    const Vec3f forward = upper.cross(Vec3f::UnitZ()).normalized();
+    const Vec3f bend = lower.cross(Vec3f::UnitZ()).normalized();
+    both(Joint::left_shoulder, body::about(Vec3f::UnitZ(), arm.collar * kDegree));
+    both(Joint::left_upper_arm, body::about(Vec3f::UnitZ(), arm.lift * kDegree) *
+                                    body::about(forward, arm.forward * kDegree) *
+                                    body::about(upper, arm.turn * kDegree));
+    both(Joint::left_lower_arm, body::about(bend, arm.elbow * kDegree));
+    both(Joint::left_upper_leg, body::about(Vec3f::UnitZ(), legs * kDegree));
+    return out;
+}
+
+/// Middle of a sex's people, moved along their largest variation.
+ShapeVector library_shape(const body::BodySpace& space, body::Sex sex, double deviations) {
+    const body::CoefficientPrior& prior = space.prior(sex);
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(prior.covariance);
+    const int last = static_cast<int>(prior.mean.size()) - 1;
+    return prior.mean +
+           deviations * std::sqrt(axes.eigenvalues()[last]) * axes.eigenvectors().col(last);
+}
+
+Mat3f upright(const Vec3f& up, float yaw) {
+    return (body::swing(Vec3f::UnitY(), up) * body::about(Vec3f::UnitY(), yaw))
+        .toRotationMatrix();
+}
+
+struct Candidate {
+    std::size_t entry = 0;
+    Mat3f turn;  ///< world from body
+    Vec3f shift; ///< of the body in the world
+    double score = 0.0;
+};
+
+bool alike(const Start& a, const Start& b) {
+    const float angle = a.pose.rotations[0].angularDistance(b.pose.rotations[0]);
+    const auto arm = static_cast<std::size_t>(Joint::left_upper_arm);
+    const auto elbow = static_cast<std::size_t>(Joint::left_lower_arm);
+    return angle < 20.0f * kDegree &&
+           a.pose.rotations[arm].angularDistance(b.pose.rotations[arm]) < 5.0f * kDegree &&
+           a.pose.rotations[elbow].angularDistance(b.pose.rotations[elbow]) < 5.0f * kDegree;
+}
+
+} // namespace
+
+StartLibrary::StartLibrary(const FitModel& model) {
+    const FitLevel& level = model.level(model.level_count() - 1);
+    PosedLevel posed;
+    for (const body::Sex sex : body::kSexes)
+        for (const double deviations : {-1.0, 1.0}) {
+            const ShapeVector shape = library_shape(model.space(), sex, deviations);
+            const body::Skeleton skeleton = model.skeleton(shape);
+            for (const ArmPose& arm : kArms)
+                for (const float legs : kLegs) {
+                    const body::Pose pose = library_pose(skeleton, arm, legs);
+                    pose_level(model, level, {shape, {}}, pose, posed);
+                    Entry entry{shape, pose, geometry::PointTree(posed.positions),
+                                posed.positions[0], posed.positions[0], Vec3f::Zero()};
+                    for (const Vec3f& p : posed.positions) {
+                        entry.low = entry.low.cwiseMin(p);
+                        entry.high = entry.high.cwiseMax(p);
+                        entry.middle += p / static_cast<float>(posed.positions.size());
+                    }
+                    entries_.push_back(std::move(entry));
+                }
+        }
+}
+
+std::vector<Start> StartLibrary::find(std::span<const Vec3f> points, std::span<const Vec3f> ups,
+                                      std::size_t count, const RowLoop& rows) const {
+    Vec3f middle = Vec3f::Zero();
+    for (const Vec3f& p : points)
+        middle += p / static_cast<float>(points.size());
+    std::vector<Candidate> candidates(entries_.size() * ups.size() * kYaws);
+    const auto judge = [&](std::size_t index) {
+        Candidate& out = candidates[index];
+        out.entry = index / (ups.size() * kYaws);
+        const Entry& entry = entries_[out.entry];
+        const Vec3f up = ups[index / kYaws % ups.size()];
+        out.turn =
+            upright(up, 2.0f * body::kPi * static_cast<float>(index % kYaws) / kYaws);
+        // The head's top stands where the points' does; feet may be out of sight.
+        float top = -1e9f;
+        for (const Vec3f& p : points)
+            top = std::max(top, up.dot(p));
+        out.shift = middle - out.turn * entry.middle;
+        out.shift += up * (top - entry.high.y() - up.dot(out.shift));
+        for (int round = 0; round <= kShifts; ++round) {
+            Vec3f off = Vec3f::Zero();
+            out.score = 0.0;
+            for (const Vec3f& p : points) {
+                const Vec3f local = out.turn.transpose() * (p - out.shift);
+                const auto near = entry.tree.nearest(local);
+                const float distance = std::sqrt(near.squared);
+                const Vec3f way = local - entry.tree.points()[near.index];
+                off += way * std::min(1.0f, kFar / std::max(distance, 1e-6f));
+                out.score += std::min(distance, kFar);
+            }
+            out.score /= static_cast<double>(points.size());
+            if (round < kShifts) out.shift += out.turn * off / static_cast<float>(points.size());
+        }
+    };
+    rows(static_cast<std::uint32_t>(candidates.size()), 8,
+         [&](std::uint32_t begin, std::uint32_t end) {
+             for (std::uint32_t i = begin; i < end; ++i)
+                 judge(i);
+         });
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+    std::vector<Start> out;
+    for (const Candidate& candidate : candidates) {
+        if (out.size() >= count) break;
+        const Entry& entry = entries_[candidate.entry];
+        Start start{entry.shape, entry.pose, candidate.score};
+        start.pose.rotations[0] = Quatf(candidate.turn).normalized();
+        start.pose.hips_position = candidate.shift;
+        if (std::none_of(out.begin(), out.end(), [&](const Start& s) { return alike(s, start); }))
+            out.push_back(std::move(start));
+    }
+    return out;
+}
+
+} // namespace toile::scape_fit
