@@ -3,6 +3,7 @@
 #define TOILE_ABI_TOILE_H
 #include "base.h"
 #include "body.h"
+#include "body_fit.h"
 #include "body_source.h"
 #include "cloth.h"
 #include "frame.h"

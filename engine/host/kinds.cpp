@@ -16,6 +16,7 @@ constexpr const char* kTool[] = {"describe", "run"};
 constexpr const char* kParameters[] = {"count", "describe", "get", "set"};
 constexpr const char* kState[] = {"save", "load"};
 constexpr const char* kDebugDraw[] = {"lines"};
+constexpr const char* kBodyFit[] = {"fit", "surface", "report"};
 constexpr const char* kTruth[] = {"people", "camera", "surface_count", "surface"};
 
 // `n` calls now, the first `base` of them in ABI 1.0.
@@ -38,6 +39,7 @@ constexpr std::array kExtensions{
     table(TOILE_STATE, kState),
     table(TOILE_DEBUG_DRAW, kDebugDraw),
     table(TOILE_TRUTH, kTruth),
+    table(TOILE_BODY_FIT, kBodyFit),
 };
 constexpr std::array kHostExtensions{TOILE_THREAD_POOL};
 
@@ -53,6 +55,7 @@ static_assert(table(TOILE_TOOL, kTool).size == sizeof(toile_tool));
 static_assert(table(TOILE_PARAMETERS, kParameters).size == sizeof(toile_parameters));
 static_assert(table(TOILE_STATE, kState).size == sizeof(toile_state));
 static_assert(table(TOILE_DEBUG_DRAW, kDebugDraw).size == sizeof(toile_debug_draw));
+static_assert(table(TOILE_BODY_FIT, kBodyFit).size == sizeof(toile_body_fit));
 static_assert(table(TOILE_TRUTH, kTruth).size == sizeof(toile_truth));
 
 } // namespace

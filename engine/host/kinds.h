@@ -76,6 +76,10 @@ struct KindOf<toile_debug_draw> {
     static constexpr const char* id = TOILE_DEBUG_DRAW;
 };
 template <>
+struct KindOf<toile_body_fit> {
+    static constexpr const char* id = TOILE_BODY_FIT;
+};
+template <>
 struct KindOf<toile_truth> {
     static constexpr const char* id = TOILE_TRUTH;
 };

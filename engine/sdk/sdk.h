@@ -1,6 +1,7 @@
 // The whole SDK for plugin authors: C++20, headers only, over engine/abi. Guide: docs/plugins.md.
 #pragma once
 
+#include "sdk/body_fit.h"
 #include "sdk/body_source.h"
 #include "sdk/cloth.h"
 #include "sdk/garment.h"

@@ -30,6 +30,16 @@ std::size_t largest(const Vec3f& barycentric) {
 
 } // namespace
 
+void ObservedPoints::correct(const CameraCorrection& by) {
+    if (!observation.eye) return;
+    correction = by;
+    for (std::size_t p = 0; p < points.size(); ++p)
+        points[p] = by.apply(observation.points[p], *observation.eye);
+    for (std::size_t e = 0; e < outline.size(); ++e)
+        outline[e] = by.turned(observation.outline[e]);
+    eye = *observation.eye + by.shift.cast<float>();
+}
+
 void Associator::set_surface(const PosedLevel& posed) {
     posed_ = &posed;
     if (tree_)
@@ -123,8 +133,10 @@ void Associator::pull_from_empty(const ObservedPoints& observed, const Associati
     if (options.empty_weight <= 0.0f || (!seen.complete && !seen.view)) return;
     for (std::uint32_t v = 0; v < level_.vertices.size(); ++v) {
         const Vec3f& x = posed_->positions[v];
+        const Vec3f as_seen =
+            seen.eye ? observed.correction.undo(x, *seen.eye) : x;
         if (seen.view) {
-            const auto sight = seen.view->sight(x);
+            const auto sight = seen.view->sight(as_seen);
             if (!sight) continue;
             const float reading =
                 seen.view->depth.metres[static_cast<std::size_t>(sight->y) *
@@ -132,10 +144,11 @@ void Associator::pull_from_empty(const ObservedPoints& observed, const Associati
                                         static_cast<std::size_t>(sight->x)];
             if (!(reading > sight->depth + kFreeSpace)) continue; // hidden, or no reading
         }
-        const auto near = observed.tree.nearest(x);
+        const auto near = observed.tree.nearest(as_seen);
         const Vec3f& p = observed.points[near.index];
         const Vec3f offset = x - p;
         VertexPair pair;
+        pair.skin = false;
         pair.vertex = v;
         pair.place = p;
         const float length = offset.norm();
@@ -165,6 +178,9 @@ void Associator::associate(const ObservedPoints& observed, const AssociationOpti
          });
     sum_up(observed, out);
     pull_from_empty(observed, options, out);
+    if (options.outline_weight > 0.0f && observed.eye && !observed.outline.empty())
+        contour_.pair(*posed_, *observed.eye, observed.outline, options.reach_m, options.scale_m,
+                      options.outline_weight, out.pairs);
 }
 
 } // namespace toile::scape_fit

@@ -25,12 +25,6 @@ Eigen::Matrix3d cross_matrix(const Vec3d& v) {
     return m;
 }
 
-Eigen::Matrix3d exponential(const Vec3d& turn) {
-    const double angle = turn.norm();
-    if (angle < 1e-12) return Eigen::Matrix3d::Identity();
-    return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-}
-
 /// How the rotation vector r of q changes with a small turn before q.
 Eigen::Matrix3d log_derivative(const Vec3d& r) {
     const double angle = r.norm();
@@ -43,11 +37,6 @@ Eigen::Matrix3d log_derivative(const Vec3d& r) {
 }
 
 } // namespace
-
-Vec3f CameraCorrection::apply(const Vec3f& point, const Vec3f& place) const {
-    const Vec3d local = (point - place).cast<double>();
-    return place + (shift + exponential(turn) * (scale * local)).cast<float>();
-}
 
 FitSolver::FitSolver(const FitModel& model) : model_(model) {
     for (std::size_t s = 0; s < body::kSexes.size(); ++s) {
@@ -108,7 +97,7 @@ void FitSolver::add_pairs(const FitLevel& level, std::span<const PosedLevel> pos
                 const Vec3f arm = pair.place - *view.eye;
                 Eigen::Map<Eigen::Matrix<float, kCameraUnknowns, 1>> camera(row + k +
                                                                             kPoseUnknowns);
-                camera << -arm.cross(pair.normal), -pair.normal, -pair.normal.dot(arm);
+                camera << -arm.cross(pair.normal), -pair.normal, pair.skin ? -pair.normal.dot(arm) : 0.0f;
             }
             row[width] = pair.distance;
             block.row(at) *= std::sqrt(pair.weight * information);
@@ -232,8 +221,8 @@ double FitSolver::step(const FitLevel& level, std::span<const PosedLevel> posed,
     for (std::size_t c = 0; c < state.cameras.size(); ++c) {
         const double* m = move.data() + camera_at(state, c);
         CameraCorrection& camera = state.cameras[c];
-        const Eigen::AngleAxisd turned(exponential(Eigen::Map<const Vec3d>(m)) *
-                                       exponential(camera.turn));
+        const Eigen::AngleAxisd turned(rotation_of(Eigen::Map<const Vec3d>(m)) *
+                                       rotation_of(camera.turn));
         camera.turn = turned.angle() * turned.axis();
         camera.shift += Eigen::Map<const Vec3d>(m + 3);
         camera.scale *= 1.0 + m[6];

@@ -8,16 +8,7 @@
 
 namespace toile::scape_fit {
 
-/// What is wrong with one camera's points: p -> place + shift + exp(turn) scale (p - place), all
-/// about the camera's reported place.
-struct CameraCorrection {
-    Vec3d turn = Vec3d::Zero();  ///< rotation vector, radians
-    Vec3d shift = Vec3d::Zero(); ///< metres
-    double scale = 1.0;
-
-    [[nodiscard]] Vec3f apply(const Vec3f& point, const Vec3f& place) const;
-};
-inline constexpr int kCameraUnknowns = 7;
+inline constexpr int kCameraUnknowns = 7; ///< turn, shift, scale
 
 /// All unknowns of a fit.
 struct FitState {

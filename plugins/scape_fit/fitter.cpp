@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace toile::scape_fit {
 
@@ -15,6 +14,7 @@ struct Fitter::Stage {
     std::array<float, 2> reach_m{};
     std::array<float, 2> scale_m{};
     float empty_weight = 0.3f;
+    float outline_weight = 0.0f;
     bool along_rays = false;
     bool fix_shape = false;
     bool free_form = false;
@@ -28,6 +28,7 @@ constexpr std::size_t kStartPoints = 400;
 constexpr std::size_t kStarts = 6;
 constexpr std::size_t kCoarsePoints = 3000;
 constexpr std::size_t kMediumPoints = 16000;
+constexpr float kOutlinePixel = 3e-4f; // m^2 that a pixel of the outline counts as
 constexpr float kFootReach = 0.05f;   // metres: a higher foot is lifted
 constexpr float kFootWeight = 0.004f; // m^2 that a sole counts as
 
@@ -39,6 +40,7 @@ Observation fewer(const Observation& from, std::size_t count) {
     out.camera = from.camera;
     out.eye = from.eye;
     out.view = from.view;
+    out.outline = from.outline;
     out.complete = from.complete;
     const double step = static_cast<double>(from.points.size()) / static_cast<double>(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -118,6 +120,7 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
         pairing.scale_m = between(stage.scale_m, at);
         pairing.along_rays = stage.along_rays;
         pairing.empty_weight = stage.empty_weight;
+        pairing.outline_weight = stage.outline_weight;
         for (std::size_t f = 0; f < posed.size(); ++f) {
             pose_level(model_, level, state.shape, state.poses[f], posed[f]);
             associators[f].set_surface(posed[f]);
@@ -126,12 +129,7 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
         for (std::size_t i = 0; i < observed.size(); ++i) {
             ObservedPoints& points = observed[i];
             const Observation& seen = points.observation;
-            if (seen.eye && seen.camera < state.cameras.size()) {
-                const CameraCorrection& camera = state.cameras[seen.camera];
-                for (std::size_t p = 0; p < seen.points.size(); ++p)
-                    points.points[p] = camera.apply(seen.points[p], *seen.eye);
-                points.eye = *seen.eye + camera.shift.cast<float>();
-            }
+            if (seen.camera < state.cameras.size()) points.correct(state.cameras[seen.camera]);
             associators[seen.instant].associate(points, pairing, rows, associations[i]);
             views.push_back({seen.instant, seen.camera, points.eye, &associations[i]});
         }
@@ -226,13 +224,13 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
     // All together, finer and finer.
     const auto medium_points = fewer(observations, kMediumPoints * instants);
     Stage medium{1, 10, {0.10f, 0.06f}, {0.05f, 0.03f}};
+    medium.along_rays = depth;
+    medium.outline_weight = kOutlinePixel;
     medium.from = 0.4, medium.to = 0.6;
     refine(medium_points, medium, options, rows, result);
-    static const auto env = [](const char* n, double d) { const char* v = std::getenv(n); return v ? std::atof(v) : d; };
-    Stage fine{0, (int)env("FINE", 8), {0.06f, depth ? 0.06f : 0.03f}, {0.03f, depth ? 0.03f : 0.01f}};
-    fine.along_rays = depth && env("RAYS", 1) > 0;
-    fine.empty_weight = (float)env("EMPTY", 0.3);
-    fine.damping = env("DAMP", 1e-3);
+    Stage fine{0, 8, {0.06f, depth ? 0.06f : 0.03f}, {0.03f, depth ? 0.03f : 0.01f}};
+    fine.along_rays = depth;
+    fine.outline_weight = kOutlinePixel;
     fine.from = 0.6, fine.to = 1.0;
     fine.free_form = options.use_free_form;
     refine(observations, fine, options, rows, result);

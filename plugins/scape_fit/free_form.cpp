@@ -28,6 +28,7 @@ void FreeForm::solve(std::span<const PosedLevel* const> posed,
     Eigen::VectorXd weight = Eigen::VectorXd::Zero(n), right = Eigen::VectorXd::Zero(n);
     for (std::size_t a = 0; a < associations.size(); ++a)
         for (const VertexPair& pair : associations[a]->pairs) {
+            if (!pair.skin) continue;
             const auto v = static_cast<int>(pair.vertex);
             // How far the place moves along the pair's normal by a unit of offset.
             const double along = pair.normal.dot(posed[a]->rotations[pair.vertex] *

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "scape_fit/contour.h"
 #include "geometry/point_tree.h"
 
 #include <Eigen/Eigenvalues>
@@ -113,6 +114,7 @@ Observation seen(std::shared_ptr<const DepthView> view, std::span<const std::uin
         out.areas.push_back(points[i].z() * points[i].z() * pixel); // across the line of sight
     }
     out.eye = place.translation();
+    out.outline = outline(*view, mask);
     out.view = std::move(view);
     return out;
 }

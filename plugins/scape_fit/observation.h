@@ -33,6 +33,7 @@ struct Observation {
     std::vector<Vec3f> points;
     std::vector<Vec3f> normals; ///< unit, outwards; empty: the camera is all that is known
     std::vector<float> areas;   ///< of the surface that a point stands for, m^2
+    std::vector<Vec3f> outline; ///< unit directions from the eye to the person's outline, or none
     std::optional<Vec3f> eye;   ///< the camera's place: a point is seen from there
     std::shared_ptr<const DepthView> view; ///< of a depth picture: tells what is free space
     bool complete = false; ///< the whole surface: where there is no point there is no body

@@ -416,3 +416,16 @@ AT(toile_tool, size, 0);
 AT(toile_tool, reserved, 4);
 AT(toile_tool, describe, 8);
 AT(toile_tool, run, 16);
+
+SIZE(toile_body_fit_options, 16);
+AT(toile_body_fit_options, size, 0);
+AT(toile_body_fit_options, sex, 4);
+AT(toile_body_fit_options, dressed, 8);
+AT(toile_body_fit_options, reserved, 12);
+
+SIZE(toile_body_fit, 32);
+AT(toile_body_fit, size, 0);
+AT(toile_body_fit, reserved, 4);
+AT(toile_body_fit, fit, 8);
+AT(toile_body_fit, surface, 16);
+AT(toile_body_fit, report, 24);

@@ -35,16 +35,17 @@ struct Settings {
     int first = 0, count = 1000;
     fs::path json;
     double shape_weight = 0.02;
-    double information = 5e7, deviation = 0.004, correlation = 0.15;
+    double information = 5e8, deviation = 0.004, correlation = 0.15;
     bool free_form = true;
     bool cameras = false;
     bool scan = false;
 };
 
 /// Four sides at 2.4 m, or the front alone; landscape pictures.
-sensor::Scenario scenario_of(const Settings& settings, const fs::path& person) {
+sensor::Scenario scenario_of(const Settings& settings, const fs::path& person,
+                             std::uint64_t seed) {
     sensor::Scenario out;
-    out.seed = 11;
+    out.seed = seed;
     out.color = false;
     out.frames = static_cast<std::uint32_t>(std::max<std::size_t>(1, settings.poses.size()));
     out.frames_per_second = 1.0;
@@ -186,7 +187,7 @@ void run(const Settings& settings) {
     for (std::size_t n = static_cast<std::size_t>(settings.first);
          n < people.size() && done < settings.count; ++n, ++done) {
         const body::TestPerson person = body::load_test_person(people[n]);
-        sensor::Simulator simulator(scenario_of(settings, people[n]), &rows_on_all_cores);
+        sensor::Simulator simulator(scenario_of(settings, people[n], 11 + n), &rows_on_all_cores);
         std::vector<fit::Observation> observations;
         fit::FitOptions options;
         const auto instants = std::max<std::size_t>(1, settings.poses.size());

@@ -1,0 +1,191 @@
+#include "pipeline/body_fit.h"
+
+#include "core/error.h"
+#include "host/mesh_sink.h"
+#include "host/views.h"
+#include "pipeline/body_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toile::pipeline {
+namespace {
+
+constexpr std::uint32_t kMostVertices = 2'000'000;
+constexpr std::uint32_t kMostTriangles = 4'000'000;
+constexpr std::uint64_t kMostReport = 1u << 20;
+
+std::vector<Vec3f> vectors_of(const toile_view& view, const char* name) {
+    if (view.count == 0 || view.data == nullptr || view.format != TOILE_F32X3 ||
+        view.stride != sizeof(Vec3f) || view.count > kMostVertices)
+        throw Error(std::string("the fit gives no usable ") + name);
+    const auto* rows = static_cast<const Vec3f*>(view.data);
+    std::vector<Vec3f> out(rows, rows + view.count);
+    for (const Vec3f& row : out)
+        if (!row.allFinite()) throw Error(std::string("the fit gives ") + name + " not finite");
+    return out;
+}
+
+void copy_body(const toile_body& body, FittedBody& out) {
+    out.model = body.model_id == nullptr ? "" : body.model_id;
+    if (body.coefficients.count > 0 && body.coefficients.format == TOILE_F32 &&
+        body.coefficients.stride == sizeof(float)) {
+        const auto* values = static_cast<const float*>(body.coefficients.data);
+        out.coefficients.assign(values, values + body.coefficients.count);
+    }
+    for (const double c : out.coefficients)
+        if (!std::isfinite(c)) throw Error("the fit gives coefficients not finite");
+    out.rest = vectors_of(body.rest.positions, "rest surface");
+    const auto joints = vectors_of(body.rest_joints, "joints");
+    if (joints.size() != body::kJointCount) throw Error("the fit gives a wrong number of joints");
+    std::copy(joints.begin(), joints.end(), out.skeleton.rest_positions.begin());
+    const auto* bytes = static_cast<const char*>(body.measurements.data);
+    for (std::uint32_t i = 0; i < body.measurements.count && bytes != nullptr; ++i) {
+        const auto& m =
+            *reinterpret_cast<const toile_measurement*>(bytes + std::size_t{i} *
+                                                                    body.measurements.stride);
+        if (m.name != nullptr && std::isfinite(m.value))
+            out.measurements[m.name] = {m.value, m.confidence};
+    }
+}
+
+toile_stream stream_of(const SensorStream& stream, std::uint32_t number) {
+    auto out = host::sized<toile_stream>();
+    out.camera = number;
+    const imaging::Intrinsics& in = stream.depth;
+    out.depth.width = static_cast<std::uint32_t>(in.width);
+    out.depth.height = static_cast<std::uint32_t>(in.height);
+    out.depth.fx = in.fx;
+    out.depth.fy = in.fy;
+    out.depth.cx = in.cx;
+    out.depth.cy = in.cy;
+    std::copy(in.distortion.begin(), in.distortion.end(), out.depth.distortion);
+    out.has_world = stream.world_from_camera ? 1 : 0;
+    const Eigen::Matrix4d place =
+        stream.world_from_camera.value_or(Eigen::Isometry3d::Identity()).matrix();
+    std::copy_n(place.data(), 16, out.world_from_camera);
+    out.frame_period_s = stream.frame_period_s;
+    return out;
+}
+
+} // namespace
+
+BodyFit::BodyFit(host::Registry& registry, host::Services& services, const toile_limits& limits) {
+    // Which of the body sources can fit is known to the libraries only; those that read recordings
+    // of their own cannot.
+    for (const host::Manifest& manifest : registry.manifests(TOILE_BODY_SOURCE)) {
+        if (!manifest.schemes.empty()) continue;
+        auto instance = std::make_unique<host::Instance>(
+            registry.find(TOILE_BODY_SOURCE, manifest.id), services);
+        fit_ = instance->find<toile_body_fit>();
+        if (fit_ == nullptr) continue;
+        instance_ = std::move(instance);
+        break;
+    }
+    if (!instance_)
+        throw Error("no plugin that fits bodies was found; `toile plugin list` shows what there is");
+    source_ = &instance_->table<toile_body_source>();
+    instance_->activate(limits);
+}
+
+void BodyFit::begin(std::span<const toile_stream> streams, host::Job& job) {
+    auto setup = host::sized<toile_body_source_setup>();
+    setup.uri = "";
+    setup.stream_count = static_cast<std::uint32_t>(streams.size());
+    setup.streams = streams.empty() ? nullptr : streams.data();
+    setup.max_people = 1;
+    instance_->call("begin", [&](toile_instance* instance) {
+        return source_->begin(instance, &setup, job.handle());
+    });
+    instants_ = 0;
+}
+
+void BodyFit::feed_scan(const geometry::TriangleMesh& scan, host::Job& job) {
+    begin({}, job);
+    auto mesh = host::sized<toile_mesh>();
+    mesh.positions = host::view_of(scan.positions);
+    mesh.normals = host::view_of(scan.normals);
+    mesh.triangles = host::view_of(scan.triangles);
+    mesh.topology_id = 1;
+    auto input = host::sized<toile_body_source_input>();
+    input.scan = &mesh;
+    instance_->call("feed",
+                    [&](toile_instance* instance) { return source_->feed(instance, &input); });
+    instants_ = 1;
+}
+
+void BodyFit::begin_cameras(std::span<const SensorStream> streams, host::Job& job) {
+    std::vector<toile_stream> told;
+    for (const SensorStream& stream : streams)
+        told.push_back(stream_of(stream, static_cast<std::uint32_t>(told.size())));
+    begin(told, job);
+}
+
+void BodyFit::feed_frames(std::span<const SensorFrame> frames) {
+    std::vector<toile_frame> given(frames.size(), host::sized<toile_frame>());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        given[i].camera = static_cast<std::uint32_t>(i);
+        given[i].sequence = frames[i].sequence;
+        given[i].timestamp_ns = frames[i].timestamp_ns;
+        given[i].depth_m = host::view_of(frames[i].depth.metres);
+    }
+    auto input = host::sized<toile_body_source_input>();
+    input.frame_count = static_cast<std::uint32_t>(given.size());
+    input.frames = given.data();
+    instance_->call("feed",
+                    [&](toile_instance* instance) { return source_->feed(instance, &input); });
+    ++instants_;
+}
+
+FittedBody BodyFit::fit(const FitRequest& request, host::Job& job) {
+    auto options = host::sized<toile_body_fit_options>();
+    options.dressed = request.dressed ? 1 : 0;
+    if (request.sex)
+        options.sex =
+            *request.sex == body::Sex::female ? TOILE_SEX_FEMALE : TOILE_SEX_MALE;
+    instance_->call("fit", [&](toile_instance* instance) {
+        return fit_->fit(instance, &options, job.handle());
+    });
+    return take(job);
+}
+
+FittedBody BodyFit::take(host::Job&) {
+    FittedBody out;
+    JointArray joints{};
+    auto person = host::sized<toile_person>();
+    person.state.size = sizeof(person.state);
+    person.joints = host::view_mut(joints);
+    std::uint32_t count = 1;
+    instance_->call("result", [&](toile_instance* instance) {
+        return source_->result(instance, &person, &count);
+    });
+    if (count == 0 || person.body == nullptr)
+        throw Error(instance_->id() + ": gave nobody after the fit");
+    copy_body(*person.body, out);
+    out.pose = local_pose(transforms_of(joints));
+    for (std::uint32_t i = 0; i < instants_; ++i) {
+        host::MeshSink sink(kMostVertices, kMostTriangles);
+        instance_->call("surface", [&](toile_instance* instance) {
+            return fit_->surface(instance, i, sink.handle());
+        });
+        const host::SunkMesh taken = sink.take();
+        geometry::TriangleMesh surface;
+        for (const auto& p : taken.positions)
+            surface.positions.emplace_back(p[0], p[1], p[2]);
+        surface.triangles = taken.triangles;
+        surface.normals.resize(surface.positions.size());
+        geometry::vertex_normals(surface.positions, surface.triangles, surface.normals);
+        out.surfaces.push_back(std::move(surface));
+    }
+    std::string text(kMostReport, '\0');
+    std::uint64_t bytes = text.size();
+    instance_->call("report", [&](toile_instance* instance) {
+        return fit_->report(instance, text.data(), &bytes);
+    });
+    text.resize(std::min<std::uint64_t>(bytes, text.size()));
+    out.report = nlohmann::ordered_json::parse(text, nullptr, false);
+    if (out.report.is_discarded()) throw Error(instance_->id() + ": its report is not JSON");
+    return out;
+}
+
+} // namespace toile::pipeline

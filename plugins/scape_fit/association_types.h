@@ -1,0 +1,32 @@
+// What associating the model with observations gives.
+#pragma once
+
+#include "core/types.h"
+
+#include <cmath>
+#include <vector>
+
+namespace toile::scape_fit {
+
+/// Pairs summed up at a vertex of the level: their weight, mean distance and mean place.
+struct VertexPair {
+    std::uint32_t vertex = 0;
+    Vec3f normal = Vec3f::Zero(); ///< along which the distance counts, unit
+    Vec3f place = Vec3f::Zero();  ///< observed, world
+    float distance = 0.0f;        ///< model minus observed, metres
+    float weight = 0.0f;          ///< m^2 of surface
+    bool skin = true; ///< a point of the surface, not of an outline, empty space or the floor
+};
+
+struct Association {
+    std::vector<VertexPair> pairs;
+    double paired_area = 0.0;   ///< m^2 of points that have a partner
+    double observed_area = 0.0; ///< m^2 of all points
+    double squares = 0.0;       ///< m^4: area times squared distance of the pairs, not weighted
+    /// Root mean square distance of the pairs, metres.
+    [[nodiscard]] double rms() const {
+        return paired_area > 0.0 ? std::sqrt(squares / paired_area) : 0.0;
+    }
+};
+
+} // namespace toile::scape_fit

@@ -1,0 +1,208 @@
+#include "scape_fit/fit_session.h"
+
+#include "body/rotations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace toile::scape_fit {
+namespace {
+
+constexpr std::size_t kScanPoints = 40000;
+constexpr double kLeastPaired = 0.75;     // of a scan's area within reach of the fitted body
+constexpr double kMostRms = 0.02;         // metres, of a scan's points
+constexpr double kLeastPairedDepth = 0.6; // grazing pixels have no partner
+constexpr double kMostRmsDepth = 0.045;
+constexpr double kLeastSeen = 0.12; // of the body's area: less says too little about it
+constexpr double kFarthest = 9.0;   // deviations a coefficient may have
+// A stationary rig that was calibrated once: degrees, millimetres and depth scale that may be off.
+constexpr CameraTrust kCalibrated{0.0035, 0.005, 0.003};
+constexpr CameraTrust kLooselyPlaced{0.05, 0.05, 0.003};
+
+std::string percent(double share) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.0f %%", 100.0 * share);
+    return text;
+}
+
+std::string millimetres(double metres) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.0f mm", 1000.0 * metres);
+    return text;
+}
+
+/// Share of the body's area with points within 3 cm.
+double seen_share(const FitLevel& level, std::span<const PosedLevel> posed,
+                  std::span<const Observation> observations) {
+    std::vector<std::uint8_t> seen(level.vertices.size(), 0);
+    for (const Observation& one : observations) {
+        const geometry::PointTree tree(one.points);
+        for (std::size_t v = 0; v < seen.size(); ++v) {
+            const Vec3f& x = posed[one.instant].positions[v];
+            const auto near = tree.nearest(x);
+            if (near.squared > 0.03f * 0.03f) continue;
+            if (one.eye && posed[one.instant].normals[v].dot(*one.eye - x) < 0.0f) continue;
+            seen[v] = 1;
+        }
+    }
+    double area = 0.0, all = 0.0;
+    for (std::size_t v = 0; v < seen.size(); ++v) {
+        all += level.areas[v];
+        if (seen[v] != 0) area += level.areas[v];
+    }
+    return area / all;
+}
+
+} // namespace
+
+/// What a fit starts from.
+struct FitSession::Input {
+    std::vector<Observation> observations;
+    FitOptions options;
+    nlohmann::ordered_json notes;
+    bool depth = false;
+};
+
+FitSession::FitSession(const FitModel& model)
+    : model_(model), fitter_(model), measurer_(model.space().model()) {}
+
+void FitSession::begin(std::vector<FitCamera> cameras) {
+    cameras_ = std::move(cameras);
+    instants_.clear();
+    scan_.reset();
+    fitted_ = false;
+}
+
+void FitSession::add_instant(std::vector<imaging::DepthImage> depths) {
+    if (depths.size() != cameras_.size())
+        throw NotFitted("an instant has " + std::to_string(depths.size()) + " pictures, of " +
+                        std::to_string(cameras_.size()) + " cameras");
+    for (std::size_t c = 0; c < depths.size(); ++c)
+        if (depths[c].width != cameras_[c].intrinsics.width ||
+            depths[c].height != cameras_[c].intrinsics.height)
+            throw NotFitted("a depth picture is not of its camera's size");
+    instants_.push_back(std::move(depths));
+    fitted_ = false;
+}
+
+void FitSession::add_scan(geometry::TriangleMesh scan) {
+    scan_ = std::move(scan);
+    fitted_ = false;
+}
+
+FitSession::Input FitSession::scan_input() {
+    PreparedScan scan = prepare_scan(*scan_, kScanPoints);
+    if (!scan.trouble.empty()) throw NotFitted(scan.trouble);
+    Input out;
+    out.options.ups = scan.ups;
+    out.options.floor = scan.floor;
+    out.options.free_form = {0.008, 0.06, 2e9};
+    out.notes["unit"] = scan.unit;
+    out.notes["metres_per_unit"] = scan.metres_per_unit;
+    out.notes["triangles_faced_inwards"] = scan.turned_inside_out;
+    out.notes["floor_found"] = scan.floor.has_value();
+    out.notes["removed_share"] = scan.removed_share;
+    out.notes["whole_surface"] = scan.observation.complete;
+    out.observations.push_back(std::move(scan.observation));
+    return out;
+}
+
+FitSession::Input FitSession::depth_input(const SessionOptions& options, const RowLoop&) {
+    (void)options;
+    Input out;
+    out.depth = true;
+    const bool calibrated =
+        std::all_of(cameras_.begin(), cameras_.end(),
+                    [](const FitCamera& camera) { return camera.world_from_camera.has_value(); });
+    if (!calibrated && cameras_.size() > 1)
+        throw NotFitted("several cameras are fitted together only when each says where it stands "
+                        "(extrinsic.json); fit one of them, or calibrate");
+    for (std::size_t f = 0; f < instants_.size(); ++f) {
+        std::vector<std::shared_ptr<DepthView>> views;
+        for (std::size_t c = 0; c < cameras_.size(); ++c) {
+            auto view = std::make_shared<DepthView>();
+            view->camera = cameras_[c].intrinsics;
+            view->world_from_camera =
+                cameras_[c].world_from_camera.value_or(Eigen::Isometry3d::Identity());
+            view->depth = instants_[f][c];
+            views.push_back(std::move(view));
+        }
+        ObservedPerson person = observe_person(views, f);
+        if (!person.trouble.empty())
+            throw NotFitted("instant " + std::to_string(f) + ": no person: " + person.trouble);
+        if (person.observations.empty())
+            throw NotFitted("instant " + std::to_string(f) + ": hardly a reading of the person");
+        if (f == 0) {
+            out.options.floor = person.floor;
+            if (person.floor && !calibrated) out.options.ups = {person.floor->normal};
+        }
+        for (Observation& one : person.observations)
+            out.observations.push_back(std::move(one));
+    }
+    out.options.camera = cameras_.size() > 1 ? kCalibrated : CameraTrust{};
+    out.options.free_form = {0.004, 0.15, 5e8};
+    out.notes["cameras"] = cameras_.size();
+    out.notes["instants"] = instants_.size();
+    out.notes["calibrated"] = calibrated;
+    out.notes["floor_found"] = out.options.floor.has_value();
+    return out;
+}
+
+void FitSession::judge(const Input& input) const {
+    const double paired = input.depth ? kLeastPairedDepth : kLeastPaired;
+    const double rms = input.depth ? kMostRmsDepth : kMostRms;
+    const std::string far = "the likeliest body explains only " + percent(result_.paired_share) +
+                            " of what was seen, " + millimetres(result_.rms_m) + " off";
+    if (result_.paired_share < paired || result_.rms_m > rms)
+        throw NotFitted("this does not look like one person: " + far);
+    const double most = result_.state.shape.coefficients.cwiseAbs().maxCoeff();
+    if (most > kFarthest)
+        throw NotFitted("this does not look like a person: nobody is shaped like the nearest "
+                        "body to it (" + std::to_string(static_cast<int>(most)) +
+                        " standard deviations from the middle)");
+    if (result_.seen_share < kLeastSeen)
+        throw NotFitted("only " + percent(result_.seen_share) +
+                        " of the body is in view: too little to tell its shape");
+}
+
+void FitSession::fit(const SessionOptions& options, const RowLoop& rows) {
+    if (!scan_ && instants_.empty()) throw NotFitted("nothing was fed to be fitted");
+    fitted_ = false;
+    Input input = scan_ ? scan_input() : depth_input(options, rows);
+    input.options.sex = options.sex;
+    input.options.dressed = options.dressed;
+    input.options.progress = options.progress;
+    result_ = fitter_.fit(input.observations, input.options, rows);
+    std::vector<PosedLevel> posed;
+    for (std::size_t f = 0; f < instant_count(); ++f)
+        posed.push_back(surface(f));
+    result_.seen_share = seen_share(model_.level(0), posed, input.observations);
+    judge(input);
+    rest_ = rest_shape(model_, result_.state.shape);
+    measurements_ = measurer_.measure(rest_.positions, rest_.skeleton);
+    report_ = input.notes;
+    const Vec3f up = result_.state.poses[0].rotations[0] * Vec3f::UnitY();
+    report_["up"] = {up.x(), up.y(), up.z()};
+    report_["sex"] = std::string(body::sex_name(result_.sex));
+    report_["rms_m"] = result_.rms_m;
+    report_["paired_share"] = result_.paired_share;
+    report_["seen_share"] = result_.seen_share;
+    report_["rounds"] = result_.rounds;
+    for (std::size_t c = 0; c < result_.state.cameras.size(); ++c) {
+        const CameraCorrection& camera = result_.state.cameras[c];
+        report_["camera_corrections"].push_back(
+            {{"turn_deg", camera.turn.norm() / static_cast<double>(body::kDegree)},
+             {"shift_m", camera.shift.norm()},
+             {"depth_scale", camera.scale}});
+    }
+    fitted_ = true;
+}
+
+PosedLevel FitSession::surface(std::size_t instant) const {
+    PosedLevel out;
+    pose_level(model_, model_.level(0), result_.state.shape, result_.state.poses.at(instant), out);
+    return out;
+}
+
+} // namespace toile::scape_fit
