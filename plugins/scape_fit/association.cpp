@@ -145,6 +145,7 @@ void Associator::pull_from_empty(const ObservedPoints& observed, const Associati
             if (!(reading > sight->depth + kFreeSpace)) continue; // hidden, or no reading
         }
         const auto near = observed.tree.nearest(as_seen);
+        if (!seen.rim.empty() && seen.rim[near.index] != 0) continue; // a hole, not empty space
         const Vec3f& p = observed.points[near.index];
         const Vec3f offset = x - p;
         VertexPair pair;

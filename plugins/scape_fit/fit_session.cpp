@@ -103,7 +103,7 @@ FitSession::Input FitSession::scan_input() {
     out.notes["triangles_faced_inwards"] = scan.turned_inside_out;
     out.notes["floor_found"] = scan.floor.has_value();
     out.notes["removed_share"] = scan.removed_share;
-    out.notes["whole_surface"] = scan.observation.complete;
+    out.notes["has_holes"] = !scan.observation.rim.empty();
     out.observations.push_back(std::move(scan.observation));
     return out;
 }

@@ -47,6 +47,7 @@ Observation fewer(const Observation& from, std::size_t count) {
         const auto at = static_cast<std::size_t>(static_cast<double>(i) * step);
         out.points.push_back(from.points[at]);
         if (!from.normals.empty()) out.normals.push_back(from.normals[at]);
+        if (!from.rim.empty()) out.rim.push_back(from.rim[at]);
         out.areas.push_back(from.areas[at] * static_cast<float>(step));
     }
     return out;

@@ -7,12 +7,14 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace toile::scape_fit {
 namespace {
 
 constexpr std::size_t kNormalNeighbours = 16;
+constexpr float kRim = 0.025f; // metres beside a border
 
 /// Every n-th of a shuffled order would do; a stride through the given order keeps scans' own
 /// evenness and is the same each time.
@@ -36,6 +38,23 @@ Vec3f plane_normal(std::span<const Vec3f> points,
     Eigen::SelfAdjointEigenSolver<Mat3f> solver;
     solver.computeDirect(covariance);
     return solver.eigenvectors().col(0);
+}
+
+void mark_rim(const geometry::TriangleMesh& mesh, Observation& out) {
+    std::map<std::array<std::uint32_t, 2>, int> edges;
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i)
+            ++edges[{std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])}];
+    std::vector<Vec3f> border;
+    for (const auto& [edge, count] : edges)
+        if (count == 1)
+            for (const auto v : edge)
+                border.push_back(mesh.positions[v]);
+    if (border.empty()) return;
+    const geometry::PointTree tree(border);
+    out.rim.resize(out.points.size());
+    for (std::size_t i = 0; i < out.points.size(); ++i)
+        out.rim[i] = tree.nearest(out.points[i]).squared < kRim * kRim ? 1 : 0;
 }
 
 } // namespace
@@ -75,6 +94,8 @@ Observation sampled(const geometry::TriangleMesh& mesh, std::size_t count) {
         out.normals.push_back((b - a).cross(c - a).normalized());
         out.areas.push_back(static_cast<float>(area / static_cast<double>(count)));
     }
+    out.complete = true;
+    mark_rim(mesh, out);
     return out;
 }
 

@@ -36,7 +36,10 @@ struct Observation {
     std::vector<Vec3f> outline; ///< unit directions from the eye to the person's outline, or none
     std::optional<Vec3f> eye;   ///< the camera's place: a point is seen from there
     std::shared_ptr<const DepthView> view; ///< of a depth picture: tells what is free space
-    bool complete = false; ///< the whole surface: where there is no point there is no body
+    /// Where there is no point there is no body, but for what lies beyond `rim` points (beside a
+    /// scan's holes and borders; empty: none).
+    bool complete = false;
+    std::vector<std::uint8_t> rim;
 };
 
 /// A mesh turned into points, at most `count`, spread evenly over its area; normals from its

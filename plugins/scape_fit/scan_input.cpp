@@ -15,10 +15,12 @@ struct Unit {
 constexpr std::array<Unit, 6> kUnits{
     {{"m", 1.0}, {"mm", 0.001}, {"cm", 0.01}, {"inch", 0.0254}, {"dm", 0.1}, {"foot", 0.3048}}};
 constexpr float kSmallest = 1.25f, kLargest = 2.25f; // metres: a person's largest extent
+constexpr float kLargestScene = 12.0f; // with what stands around
+constexpr float kStanding = 1.0f;    // metres that a person is at least tall above a floor
+constexpr float kOnFloor = 0.03f, kFloorExtent = 0.8f; // metres
 constexpr float kFloorTilt = 0.5f;                   // radians a floor may be off an axis
 constexpr std::size_t kFewPoints = 300;
 constexpr std::size_t kPieceSamples = 200000;
-constexpr double kClosedShare = 0.02; // boundary edges by triangles: fewer is a whole surface
 
 float largest_extent(std::span<const Vec3f> points, const Vec3f& axis) {
     float low = 1e30f, high = -1e30f;
@@ -85,53 +87,68 @@ std::vector<Vec3f> axes() {
             -Vec3f::UnitZ(), Vec3f::UnitX(), -Vec3f::UnitX()};
 }
 
+/// A floor with a person on it: flat, beyond the feet on all sides, and people are tall above it.
+std::optional<geometry::Plane> floor_along(std::span<const Vec3f> points, const Vec3f& axis) {
+    const auto floor = find_floor(points, axis, kFloorTilt);
+    if (!floor) return std::nullopt;
+    const Vec3f across = floor->normal.unitOrthogonal(), other = floor->normal.cross(across);
+    std::size_t on = 0;
+    Vec2f low = Vec2f::Constant(1e9f), high = -low;
+    float top = 0.0f;
+    for (const Vec3f& p : points) {
+        const float height = floor->normal.dot(p) - floor->offset;
+        top = std::max(top, height);
+        if (std::abs(height) > kOnFloor) continue;
+        ++on;
+        const Vec2f at(across.dot(p), other.dot(p));
+        low = low.cwiseMin(at);
+        high = high.cwiseMax(at);
+    }
+    if (on * 25 < points.size() || (high - low).minCoeff() < kFloorExtent || top < kStanding)
+        return std::nullopt;
+    return floor;
+}
+
 /// Floor and pieces with one unit assumed; true when a person of human size is left.
 bool try_unit(const geometry::TriangleMesh& mesh, PreparedScan& out) {
     const auto& points = mesh.positions;
-    std::optional<Vec3f> up;
-    for (const Vec3f& axis : axes()) {
-        const auto floor = find_floor(points, axis, kFloorTilt);
-        if (!floor) continue;
-        // A floor reaches beyond the feet.
-        std::size_t on = 0;
-        Vec3f low = Vec3f::Constant(1e9f), high = -low;
-        for (const Vec3f& p : points)
-            if (std::abs(floor->normal.dot(p) - floor->offset) < 0.03f) {
-                ++on;
-                low = low.cwiseMin(p);
-                high = high.cwiseMax(p);
-            }
-        if (on * 25 < points.size() || (high - low).maxCoeff() < 0.8f) continue;
-        out.floor = floor;
-        up = floor->normal;
-        break;
-    }
     geometry::TriangleMesh person = mesh;
     const Vec3f longest = main_axis(points);
     const float extent = std::max({largest_extent(points, longest),
                                    largest_extent(points, Vec3f::UnitY()),
                                    largest_extent(points, Vec3f::UnitZ()),
                                    largest_extent(points, Vec3f::UnitX())});
-    if (up || extent > kLargest) {
-        const FoundPerson found = find_person(points, up.value_or(Vec3f::UnitY()), out.floor);
-        if (!found.trouble.empty() || found.height_m < 1.0f || found.height_m > kLargest)
-            return out.floor.reset(), false;
+    if (extent < kSmallest || extent > kLargestScene) return false;
+    for (const Vec3f& axis : axes()) {
+        const auto floor = floor_along(points, axis);
+        if (!floor) continue;
+        const FoundPerson found = find_person(points, floor->normal, floor);
+        if (!found.trouble.empty() || found.height_m < kStanding || found.height_m > kLargest)
+            continue;
+        out.floor = floor;
+        out.ups = {floor->normal};
         person = part(mesh, found.mask);
-        out.removed_share = 1.0 - static_cast<double>(found.count) /
-                                      static_cast<double>(std::max<std::size_t>(1, points.size()));
-    } else if (extent < kSmallest) {
+        break;
+    }
+    if (!out.floor && extent > kLargest) {
+        // Clutter without a floor: whatever is upright by the file's own axes.
+        const FoundPerson found = find_person(points, Vec3f::UnitY(), std::nullopt);
+        if (!found.trouble.empty() || found.height_m < kStanding) return false;
+        person = part(mesh, found.mask);
+    }
+    if (person.positions.size() < kFewPoints && person.triangles.size() < kFewPoints) {
+        out.floor.reset();
         return false;
     }
-    if (person.positions.size() < kFewPoints && person.triangles.size() < kFewPoints) return false;
-    if (up)
-        out.ups = {*up};
-    else {
+    if (!out.floor) {
         out.ups = axes();
         for (const Vec3f& way : {longest, Vec3f(-longest)})
             if (std::none_of(out.ups.begin(), out.ups.end(),
                              [&](const Vec3f& u) { return u.dot(way) > 0.97f; }))
                 out.ups.push_back(way);
     }
+    out.removed_share = 1.0 - static_cast<double>(person.positions.size()) /
+                                  static_cast<double>(points.size());
     out.person = std::move(person);
     return true;
 }
@@ -176,11 +193,6 @@ PreparedScan prepare_scan(const geometry::TriangleMesh& scan, std::size_t count)
                 std::swap(t[1], t[2]);
         }
         out.observation = sampled(out.person, count);
-        const auto topology =
-            geometry::check_topology(out.person.positions, out.person.triangles);
-        out.observation.complete =
-            static_cast<double>(topology.boundary_edges) <
-            kClosedShare * static_cast<double>(out.person.triangles.size());
     } else {
         out.observation = thinned(out.person.positions, out.person.normals, count);
     }

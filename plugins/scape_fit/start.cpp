@@ -15,6 +15,8 @@ using body::kDegree;
 constexpr float kFar = 0.15f; // metres
 constexpr int kYaws = 16;
 constexpr int kShifts = 4;
+constexpr std::size_t kFewer = 5;      // every n-th point for the quick look
+constexpr std::size_t kGoodLook = 300; // candidates looked at with all points
 
 /// Degrees of a left arm: the shoulder's and the upper arm's lift, the arm's way forward, and the
 /// elbow's bend. The right arm mirrors it.
@@ -117,24 +119,16 @@ std::vector<Start> StartLibrary::find(std::span<const Vec3f> points, std::span<c
     Vec3f middle = Vec3f::Zero();
     for (const Vec3f& p : points)
         middle += p / static_cast<float>(points.size());
-    std::vector<Candidate> candidates(entries_.size() * ups.size() * kYaws);
-    const auto judge = [&](std::size_t index) {
-        Candidate& out = candidates[index];
-        out.entry = index / (ups.size() * kYaws);
+    // A quick look with few points at everything, then a good one at the best.
+    std::vector<Vec3f> few;
+    for (std::size_t i = 0; i < points.size(); i += kFewer)
+        few.push_back(points[i]);
+    const auto judge = [&](Candidate& out, std::span<const Vec3f> seen, int shifts) {
         const Entry& entry = entries_[out.entry];
-        const Vec3f up = ups[index / kYaws % ups.size()];
-        out.turn =
-            upright(up, 2.0f * body::kPi * static_cast<float>(index % kYaws) / kYaws);
-        // The head's top stands where the points' does; feet may be out of sight.
-        float top = -1e9f;
-        for (const Vec3f& p : points)
-            top = std::max(top, up.dot(p));
-        out.shift = middle - out.turn * entry.middle;
-        out.shift += up * (top - entry.high.y() - up.dot(out.shift));
-        for (int round = 0; round <= kShifts; ++round) {
+        for (int round = 0; round <= shifts; ++round) {
             Vec3f off = Vec3f::Zero();
             out.score = 0.0;
-            for (const Vec3f& p : points) {
+            for (const Vec3f& p : seen) {
                 const Vec3f local = out.turn.transpose() * (p - out.shift);
                 const auto near = entry.tree.nearest(local);
                 const float distance = std::sqrt(near.squared);
@@ -142,17 +136,36 @@ std::vector<Start> StartLibrary::find(std::span<const Vec3f> points, std::span<c
                 off += way * std::min(1.0f, kFar / std::max(distance, 1e-6f));
                 out.score += std::min(distance, kFar);
             }
-            out.score /= static_cast<double>(points.size());
-            if (round < kShifts) out.shift += out.turn * off / static_cast<float>(points.size());
+            out.score /= static_cast<double>(seen.size());
+            if (round < shifts) out.shift += out.turn * off / static_cast<float>(seen.size());
         }
     };
-    rows(static_cast<std::uint32_t>(candidates.size()), 8,
-         [&](std::uint32_t begin, std::uint32_t end) {
-             for (std::uint32_t i = begin; i < end; ++i)
-                 judge(i);
-         });
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+    std::vector<Candidate> candidates(entries_.size() * ups.size() * kYaws);
+    for (std::size_t index = 0; index < candidates.size(); ++index) {
+        Candidate& out = candidates[index];
+        out.entry = index / (ups.size() * kYaws);
+        const Entry& entry = entries_[out.entry];
+        const Vec3f up = ups[index / kYaws % ups.size()];
+        out.turn = upright(up, 2.0f * body::kPi * static_cast<float>(index % kYaws) / kYaws);
+        // The head's top stands where the points' does; feet may be out of sight.
+        float top = -1e9f;
+        for (const Vec3f& p : points)
+            top = std::max(top, up.dot(p));
+        out.shift = middle - out.turn * entry.middle;
+        out.shift += up * (top - entry.high.y() - up.dot(out.shift));
+    }
+    const auto judge_all = [&](std::span<const Vec3f> seen, int shifts) {
+        rows(static_cast<std::uint32_t>(candidates.size()), 8,
+             [&](std::uint32_t begin, std::uint32_t end) {
+                 for (std::uint32_t i = begin; i < end; ++i)
+                     judge(candidates[i], seen, shifts);
+             });
+        std::stable_sort(candidates.begin(), candidates.end(),
+                         [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+    };
+    judge_all(few, 1);
+    candidates.resize(std::min(candidates.size(), kGoodLook));
+    judge_all(points, kShifts);
     std::vector<Start> out;
     for (const Candidate& candidate : candidates) {
         if (out.size() >= count) break;
