@@ -1,11 +1,12 @@
 #include "apps/avatar_space_command.h"
 
 #include "apps/commands.h"
+#include "body/body_file.h"
 #include "body/body_from_numbers.h"
 #include "body/measurer.h"
 #include "body/pose_training.h"
 #include "body/space_training.h"
-#include "core/bytes.h"
+#include "core/error.h"
 #include "core/log.h"
 
 #include <iomanip>
@@ -106,18 +107,16 @@ void make_new(const NewBody& wish) {
                                 wanted, body::measure_by_definitions(space.model(), names));
     const body::BodyShape shape =
         space.shape({made.coefficients.data(), static_cast<std::size_t>(made.coefficients.size())});
-    nlohmann::ordered_json json;
-    json["schema"] = 1;
-    json["model"] = space.model().id;
-    json["model_version"] = space.model().version;
-    json["made_by"] = "measurements";
-    json["sex"] = wish.sex;
-    json["coefficients"] = std::vector<double>(made.coefficients.begin(), made.coefficients.end());
+    body::BodyFile file;
+    file.model = space.model().id;
+    file.model_version = space.model().version;
+    file.made_by = "measurements";
+    file.sex = wish.sex == "female" ? body::Sex::female : body::Sex::male;
+    file.coefficients.assign(made.coefficients.begin(), made.coefficients.end());
     for (const body::Measurement& m :
          body::Measurer(space.model()).measure(shape.positions, shape.skeleton))
-        json["measurements"][std::string(m.name)] = {{"value", m.value_m},
-                                                     {"confidence", m.confidence}};
-    write_text(wish.out, json.dump(2) + "\n");
+        file.measurements[std::string(m.name)] = {m.value_m, m.confidence};
+    body::save_body_file(file, wish.out);
     for (const auto& [name, metres] : wanted)
         std::cout << name << " " << made.measurements.at(name) << " m (wanted " << metres << ")\n";
     std::cout << "wrote " << wish.out.string() << "\n";

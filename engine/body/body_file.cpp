@@ -1,0 +1,190 @@
+#include "body/body_file.h"
+
+#include "body/measurer.h"
+#include "core/bytes.h"
+#include "core/json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace toile::body {
+namespace {
+
+constexpr std::int64_t kSchema = 1;
+constexpr std::size_t kMostBytes = 8u << 20;
+constexpr double kDetailStep = 1e-5; // metres: what a file keeps of the detail
+constexpr std::int64_t kMostDetail = 20000;
+constexpr std::size_t kMostCoefficients = 1000;
+
+std::vector<double> coefficients_of(JsonObject& object) {
+    const nlohmann::json& list = object.any("coefficients");
+    if (!list.is_array() || list.size() > kMostCoefficients)
+        throw object.error("coefficients", "must be a list of at most 1000 numbers");
+    return object.numbers("coefficients", list.size());
+}
+
+std::vector<float> detail_in(JsonObject& object) {
+    const nlohmann::json& list = object.any("detail");
+    if (!list.is_array()) throw object.error("detail", "must be a list of whole numbers");
+    std::vector<float> out;
+    for (const auto& value : list) {
+        if (!value.is_number_integer() || std::abs(value.get<std::int64_t>()) > kMostDetail)
+            throw object.error("detail", "must hold whole numbers within +-20000 (0.01 mm each)");
+        out.push_back(static_cast<float>(kDetailStep * value.get<double>()));
+    }
+    return out;
+}
+
+Pose pose_in(JsonObject pose) {
+    Pose out;
+    const auto place = pose.numbers("hips_position", 3);
+    out.hips_position = Vec3d(place[0], place[1], place[2]).cast<float>();
+    JsonObject rotations = pose.object("rotations");
+    for (const auto& name : rotations.keys()) {
+        const auto joint = joint_from_name(name);
+        if (!joint) throw rotations.error(name, "is no joint");
+        const auto q = rotations.numbers(name, 4);
+        const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
+        if (std::abs(rotation.norm() - 1.0) > 1e-3)
+            throw rotations.error(name, "is not a unit quaternion (x y z w)");
+        out.rotations[static_cast<std::size_t>(*joint)] = rotation.normalized().cast<float>();
+    }
+    rotations.finish();
+    pose.finish();
+    return out;
+}
+
+nlohmann::ordered_json pose_out(const Pose& pose) {
+    nlohmann::ordered_json out;
+    const Vec3f& p = pose.hips_position;
+    out["hips_position"] = {p.x(), p.y(), p.z()};
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+        const Quatf& q = pose.rotations[j];
+        out["rotations"][std::string(joint_name(static_cast<Joint>(j)))] = {q.x(), q.y(), q.z(),
+                                                                             q.w()};
+    }
+    return out;
+}
+
+std::string major(const std::string& version) {
+    return version.substr(0, version.find('.'));
+}
+
+} // namespace
+
+bool is_body_file(const std::filesystem::path& file) {
+    return file.extension() == ".json";
+}
+
+BodyFile load_body_file(const std::filesystem::path& file) {
+    const nlohmann::json json = parse_json_file(file, kMostBytes);
+    JsonObject object(json, file.string());
+    object.integer("schema", kSchema, kSchema);
+    BodyFile out;
+    out.model = object.text("model");
+    out.model_version = object.text("model_version");
+    out.made_by = object.text("made_by");
+    if (object.has("sex")) {
+        const std::string sex = object.text("sex");
+        if (sex != "female" && sex != "male")
+            throw object.error("sex", "must be \"female\" or \"male\"");
+        out.sex = sex == "female" ? Sex::female : Sex::male;
+    }
+    out.coefficients = coefficients_of(object);
+    if (object.has("detail")) out.detail = detail_in(object);
+    if (object.has("pose")) out.pose = pose_in(object.object("pose"));
+    if (object.has("measurements")) {
+        JsonObject measurements = object.object("measurements");
+        for (const auto& name : measurements.keys()) {
+            JsonObject row = measurements.object(name);
+            BodyFile::Length& length = out.measurements[name];
+            length.value_m = row.number("value", 0.0, 10.0);
+            length.confidence = row.number("confidence", 0.0, 1.0);
+            row.finish();
+        }
+        measurements.finish();
+    }
+    if (object.has("fit")) out.fit = object.any("fit");
+    object.finish();
+    return out;
+}
+
+void save_body_file(const BodyFile& body, const std::filesystem::path& file) {
+    nlohmann::ordered_json json;
+    json["schema"] = kSchema;
+    json["model"] = body.model;
+    json["model_version"] = body.model_version;
+    json["made_by"] = body.made_by;
+    if (body.sex) json["sex"] = sex_name(*body.sex);
+    json["coefficients"] = body.coefficients;
+    if (body.pose) json["pose"] = pose_out(*body.pose);
+    for (const auto& [name, length] : body.measurements)
+        json["measurements"][name] = {{"value", length.value_m},
+                                      {"confidence", length.confidence}};
+    if (!body.fit.is_null()) json["fit"] = body.fit;
+    if (!body.detail.empty()) {
+        std::vector<std::int64_t> steps;
+        for (const float d : body.detail)
+            steps.push_back(std::llround(static_cast<double>(d) / kDetailStep));
+        json["detail"] = steps;
+    }
+    // One line a key: the long lists are not for reading.
+    std::string text = "{";
+    for (const auto& [key, value] : json.items())
+        text += std::string(text.size() > 1 ? "," : "") + "\n  " +
+                nlohmann::ordered_json(key).dump() + ": " +
+                (key == "detail" || key == "coefficients" ? value.dump() : value.dump(2));
+    write_text(file, text + "\n}\n");
+}
+
+BodyShape shape_of(const BodyFile& body, const BodySpace& space) {
+    BodyShape out = space.shape(body.coefficients);
+    if (body.detail.empty()) return out;
+    const auto& normals = space.model().rest.normals;
+    if (body.detail.size() != out.positions.size())
+        throw Error("a body's detail of " + std::to_string(body.detail.size()) +
+                    " vertices does not fit '" + space.model().id + "', which has " +
+                    std::to_string(out.positions.size()));
+    float floor = std::numeric_limits<float>::max();
+    for (std::size_t v = 0; v < out.positions.size(); ++v) {
+        out.positions[v] += body.detail[v] * normals[v];
+        floor = std::min(floor, out.positions[v].y());
+    }
+    for (Vec3f& p : out.positions)
+        p.y() -= floor;
+    for (Vec3f& p : out.skeleton.rest_positions)
+        p.y() -= floor;
+    return out;
+}
+
+BodyModel model_of(const BodyFile& body) {
+    const BodySpace space = BodySpace::load(find_avatar(body.model));
+    if (major(space.model().version) != major(body.model_version))
+        throw Error("the body was made with version " + body.model_version + " of '" + body.model +
+                    "'; here is " + space.model().version + ", whose coefficients mean other bodies");
+    BodyModel out = space.body(body.coefficients);
+    BodyShape shape = shape_of(body, space);
+    out.rest.positions = std::move(shape.positions);
+    geometry::vertex_normals(out.rest.positions, out.rest.triangles, out.rest.normals);
+    out.skeleton = shape.skeleton;
+    out.measurements = as_map(Measurer(out).measure(out.rest.positions, out.skeleton));
+    return out;
+}
+
+std::vector<float> detail_of(const BodySpace& space, std::span<const double> coefficients,
+                             std::span<const Vec3f> rest, const Skeleton& skeleton) {
+    const BodyShape plain = space.shape(coefficients);
+    const auto& normals = space.model().rest.normals;
+    if (rest.size() != plain.positions.size())
+        throw Error("a surface of " + std::to_string(rest.size()) +
+                    " vertices is not on the topology of '" + space.model().id + "'");
+    // The joints tell how much deeper one stands than the other.
+    const Vec3f lifted = skeleton.rest(Joint::hips) - plain.skeleton.rest(Joint::hips);
+    std::vector<float> out;
+    for (std::size_t v = 0; v < rest.size(); ++v)
+        out.push_back(normals[v].dot(rest[v] - plain.positions[v] - lifted));
+    return out;
+}
+
+} // namespace toile::body
