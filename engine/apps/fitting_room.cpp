@@ -1,5 +1,6 @@
 #include "apps/fitting_room.h"
 
+#include "body/body_file.h"
 #include "core/error.h"
 #include "garment/size_choice.h"
 
@@ -71,16 +72,22 @@ FittingRoom::~FittingRoom() = default;
 std::shared_ptr<const pipeline::BoundaryBody> FittingRoom::load_body(const std::string& id) {
     namespace fs = std::filesystem;
     const fs::path path(id);
+    if (body::is_body_file(path)) return keep(path, body::model_of(body::load_body_file(path)));
     if (path.has_extension() && fs::is_regular_file(path))
-        throw Error(id + ": only avatars can be dressed so far; choose one of " +
-                    known(body::list_avatars()) + ", or an avatar's folder");
+        throw Error(id + ": a mesh is fitted before it is dressed: toile fit --scan " + id +
+                    " --out body.json; or choose one of " + known(body::list_avatars()));
     const fs::path folder = fs::is_directory(path) ? path : body::find_avatar(id);
-    for (const auto& body : bodies_)
-        if (body->model().folder == folder) return body;
-    auto model = std::make_shared<const body::BodyModel>(body::load_body_model(folder));
+    for (const LoadedBody& loaded : bodies_)
+        if (loaded.from == folder) return loaded.body;
+    return keep(folder, body::load_body_model(folder));
+}
+
+std::shared_ptr<const pipeline::BoundaryBody>
+FittingRoom::keep(const std::filesystem::path& from, body::BodyModel model) {
     bodies_.push_back(
-        std::make_shared<const pipeline::BoundaryBody>(std::move(model), next_revision_++));
-    return bodies_.back();
+        {from, std::make_shared<const pipeline::BoundaryBody>(
+                   std::make_shared<const body::BodyModel>(std::move(model)), next_revision_++)});
+    return bodies_.back().body;
 }
 
 std::shared_ptr<const pipeline::BoundaryGarment>

@@ -14,7 +14,7 @@ namespace toile::apps {
 
 /// What is to be worn by whom.
 struct Outfit {
-    std::string body = "mannequin";    ///< avatar id, or its folder
+    std::string body = "mannequin";    ///< avatar id, its folder, or a body.json
     std::vector<std::string> garments; ///< ids, folders or zips; inner to outer by their layer
     std::string size = "auto";         ///< a size's name, or "auto": from the size chart
 };
@@ -38,7 +38,13 @@ class FittingRoom {
     [[nodiscard]] const std::vector<std::string>& choices() const { return choices_; }
 
   private:
+    struct LoadedBody {
+        std::filesystem::path from; ///< an avatar's folder, or a body.json
+        std::shared_ptr<const pipeline::BoundaryBody> body;
+    };
     std::shared_ptr<const pipeline::BoundaryBody> load_body(const std::string& id);
+    std::shared_ptr<const pipeline::BoundaryBody> keep(const std::filesystem::path& from,
+                                                       body::BodyModel model);
     std::shared_ptr<const pipeline::BoundaryGarment> load_garment(const std::string& id,
                                                                   const std::string& size);
 
@@ -47,7 +53,7 @@ class FittingRoom {
     host::Job job_;
     pipeline::DressingOptions dressing_;
     std::uint64_t next_revision_ = 1;
-    std::vector<std::shared_ptr<const pipeline::BoundaryBody>> bodies_;
+    std::vector<LoadedBody> bodies_;
     std::shared_ptr<const pipeline::BoundaryBody> body_;
     std::unique_ptr<pipeline::DressedPerson> person_;
     std::vector<std::string> choices_;

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 namespace sensor = toile::simulated_sensor;
 namespace fit = toile::scape_fit;
 namespace body = toile::body;
+using toile::Quatf;
 using toile::Vec3d;
 using toile::Vec3f;
 
@@ -56,9 +57,14 @@ sensor::Scenario scenario_of(const Settings& settings, const fs::path& person,
     who.hold_s = 1.0;
     who.change_s = 1e-3;
     out.people.push_back(who);
-    sensor::WallSettings wall;
-    wall.position = Vec3f(0.0f, 0.0f, -3.2f);
-    out.scene.walls.push_back(wall);
+    for (int i = 0; i < 4; ++i) { // a room of 7 m
+        sensor::WallSettings wall;
+        wall.turn = 0.5 * std::numbers::pi * i;
+        wall.position = Quatf(Eigen::AngleAxisf(static_cast<float>(wall.turn), Vec3f::UnitY())) *
+                        Vec3f(0.0f, 0.0f, -3.5f);
+        wall.width_m = 7.0;
+        out.scene.walls.push_back(wall);
+    }
     for (int i = 0; i < settings.views; ++i) {
         sensor::CameraSettings camera = sensor::camera_of(sensor::CameraModel::kinect_v1);
         const double angle = 0.5 * std::numbers::pi * i;
