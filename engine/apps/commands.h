@@ -16,6 +16,7 @@ void add_view_commands(CLI::App& app, const GlobalOptions& options);
 void add_plugin_commands(CLI::App& app, const GlobalOptions& options);
 void add_record_commands(CLI::App& app, const GlobalOptions& options);
 void add_fit_commands(CLI::App& app, const GlobalOptions& options);
+void add_measure_commands(CLI::App& app, const GlobalOptions& options);
 
 /// toile garment list | check | new | pack
 void add_garment_commands(CLI::App& app, const GlobalOptions& options);

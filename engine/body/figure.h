@@ -38,7 +38,7 @@ struct Axes {
     Vec3f left = Vec3f::UnitX(); ///< the person's
 };
 
-/// Found on a fitted model (body/measurer.h) or on any upright mesh (body/figure_finder.h). World
+/// Found on a body of a model (body/measurer.h). World
 /// frame, metres. Borrows the surface.
 struct Figure {
     std::span<const Vec3f> positions;    ///< (nv)

@@ -97,12 +97,12 @@ Associator::Partner Associator::partner(const ObservedPoints& observed, std::siz
     out.distance = normal.dot(offset);
     weight *= body::smooth_step(options.least_cosine - 1e-3f, kFullCosine, cosine);
     weight *= geman_mcclure(offset.norm(), options.scale_m) * level_.trust[out.vertex];
-    if (out.distance < 0.0f) weight *= options.outside_weight;
     out.weight = weight;
     return out;
 }
 
-void Associator::sum_up(const ObservedPoints& observed, Association& out) {
+void Associator::sum_up(const ObservedPoints& observed, const AssociationOptions& options,
+                        Association& out) {
     sums_.assign(level_.vertices.size(), {});
     for (std::size_t i = 0; i < partners_.size(); ++i) {
         const float area = observed.observation.areas[i];
@@ -123,6 +123,10 @@ void Associator::sum_up(const ObservedPoints& observed, Association& out) {
         sum.distance /= sum.weight;
         sum.place /= sum.weight;
         sum.normal = posed_->normals[v];
+        // One-sided where cloth may be (Balan and Black 2008): of many noisy points together, so
+        // that their noise does not pull the body in.
+        if (level_.clothed[v] != 0 && sum.distance < -options.cloth_margin_m)
+            sum.weight *= options.outside_weight;
         out.pairs.push_back(sum);
     }
 }
@@ -177,11 +181,11 @@ void Associator::associate(const ObservedPoints& observed, const AssociationOpti
              for (std::uint32_t i = begin; i < end; ++i)
                  partners_[i] = partner(observed, i, options);
          });
-    sum_up(observed, out);
+    sum_up(observed, options, out);
     pull_from_empty(observed, options, out);
     if (options.outline_weight > 0.0f && observed.eye && !observed.outline.empty())
         contour_.pair(*posed_, *observed.eye, observed.outline, options.reach_m, options.scale_m,
-                      options.outline_weight, out.pairs);
+                      options.outline_weight, options.outside_weight, out.pairs);
 }
 
 } // namespace toile::scape_fit

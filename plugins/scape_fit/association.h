@@ -19,7 +19,10 @@ struct AssociationOptions {
     bool along_rays = false;      ///< pairs on the line of sight: unbiased by noise along it
     float empty_weight = 0.3f;    ///< of model places where the observation has nothing
     float outline_weight = 0.0f; ///< m^2 that a pixel of the outline counts as; 0: not used
-    float outside_weight = 1.0f;  ///< of points outside the model: below 1 for dressed people
+    /// Of places whose points lie outside the model on the whole, on parts that clothes cover: below
+    /// 1 for dressed people.
+    float outside_weight = 1.0f;
+    float cloth_margin_m = 0.0f; ///< and of those only, what lies at least so far outside
 };
 
 /// One observation as the fit uses it.
@@ -59,7 +62,8 @@ class Associator {
     [[nodiscard]] Partner partner(const ObservedPoints& observed, std::size_t point,
                                   const AssociationOptions& options) const;
     [[nodiscard]] Vec3f normal_at(std::uint32_t triangle, const Vec3f& barycentric) const;
-    void sum_up(const ObservedPoints& observed, Association& out);
+    void sum_up(const ObservedPoints& observed, const AssociationOptions& options,
+                Association& out);
     void pull_from_empty(const ObservedPoints& observed, const AssociationOptions& options,
                          Association& out) const;
 

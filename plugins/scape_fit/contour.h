@@ -17,13 +17,15 @@ namespace toile::scape_fit {
 
 /// The model's own outline as `eye` sees it, paired with directions `edges` (corrected), summed up
 /// at vertices. Pairs farther than `reach_m` are left out; `weight` is the area (m^2) that one
-/// direction counts as.
+/// direction counts as; times `inside_weight` where the model lies inside the outline on parts that
+/// clothes may cover.
 class ContourPairing {
   public:
     explicit ContourPairing(const FitLevel& level);
 
     void pair(const PosedLevel& posed, const Vec3f& eye, std::span<const Vec3f> edges,
-              float reach_m, float scale_m, float weight, std::vector<VertexPair>& out);
+              float reach_m, float scale_m, float weight, float inside_weight,
+              std::vector<VertexPair>& out);
 
   private:
     const FitLevel& level_;

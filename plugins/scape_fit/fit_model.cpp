@@ -24,6 +24,25 @@ float trust_of(const body::BodyModel& model, std::uint32_t vertex) {
     return 1.0f - 0.8f * hand;
 }
 
+bool may_be_clothed(const body::BodyModel& model, std::uint32_t vertex) {
+    if (model.parts[vertex] == body::Part::head) return false;
+    float bare = 0.0f;
+    for (std::size_t k = 0; k < 4; ++k)
+        switch (static_cast<Joint>(model.skin.joints[vertex][k])) {
+        case Joint::left_hand:
+        case Joint::right_hand:
+        case Joint::left_foot:
+        case Joint::right_foot:
+        case Joint::left_toes:
+        case Joint::right_toes:
+            bare += model.skin.weights[vertex][k];
+            break;
+        default:
+            break;
+        }
+    return bare < 0.5f;
+}
+
 std::array<float, kJointCount> shares_below(const body::SkinWeights& skin, std::size_t vertex) {
     std::array<float, kJointCount> out{};
     for (std::size_t k = 0; k < 4; ++k)
@@ -52,6 +71,7 @@ FitLevel make_fit_level(const body::BodySpace& space, const body::PoseTables& ta
         out.correctives.weights.push_back(tables.correctives.weights[v]);
         out.below.push_back(shares_below(model.skin, v));
         out.trust.push_back(trust_of(model, v));
+        out.clothed.push_back(may_be_clothed(model, v) ? 1 : 0);
         for (int c = 0; c < k; ++c)
             out.components.block<3, 1>(static_cast<int>(3 * i), c) =
                 model.shape[static_cast<std::size_t>(c)].vertex_offsets[v];

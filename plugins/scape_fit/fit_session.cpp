@@ -141,7 +141,7 @@ FitSession::Input FitSession::depth_input(const SessionOptions& options, const R
             out.observations.push_back(std::move(one));
     }
     out.options.camera = cameras_.size() > 1 ? kCalibrated : CameraTrust{};
-    out.options.free_form = {0.004, 0.15, 5e8};
+    out.options.free_form = {0.004, 0.15, 1.5e8};
     out.notes["cameras"] = cameras_.size();
     out.notes["instants"] = instants_.size();
     out.notes["calibrated"] = calibrated;

@@ -15,6 +15,9 @@ struct Fitter::Stage {
     std::array<float, 2> scale_m{};
     float empty_weight = 0.3f;
     float outline_weight = 0.0f;
+    float outside_weight = 1.0f;
+    float cloth_margin_m = 0.0f;
+    double shape_weight = 0.0; ///< instead of the options'; 0: theirs
     bool along_rays = false;
     bool fix_shape = false;
     bool free_form = false;
@@ -122,6 +125,8 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
         pairing.along_rays = stage.along_rays;
         pairing.empty_weight = stage.empty_weight;
         pairing.outline_weight = stage.outline_weight;
+        pairing.outside_weight = stage.outside_weight;
+        pairing.cloth_margin_m = stage.cloth_margin_m;
         for (std::size_t f = 0; f < posed.size(); ++f) {
             pose_level(model_, level, state.shape, state.poses[f], posed[f]);
             associators[f].set_surface(posed[f]);
@@ -143,7 +148,7 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
         if (round == stage.rounds) break; // the last look is for the figures
         FitPriors priors;
         priors.sex = result.sex == body::Sex::invalid ? options.sex : result.sex;
-        priors.shape_weight = options.shape_weight;
+        priors.shape_weight = stage.shape_weight > 0.0 ? stage.shape_weight : options.shape_weight;
         priors.fix_shape = stage.fix_shape;
         priors.camera = options.camera;
         solver_.step(level, posed, views, priors, stage.damping, rows, state);
@@ -167,6 +172,20 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
         paired += a.paired_area;
     }
     result.paired_share = paired / std::max(observed_area, 1e-9);
+}
+
+/// What is seen is cloth: the body lies within it, and where cloth is tight in one of the instants it
+/// lies on it (P5 4.3 without its bias: one shape for all instants, one-sided).
+void Fitter::find_beneath(std::span<const Observation> observations, bool depth,
+                          const FitOptions& options, const RowLoop& rows, FitResult& result) {
+    Stage beneath{1, 14, {0.12f, 0.08f}, {0.08f, 0.05f}};
+    beneath.along_rays = depth;
+    beneath.outline_weight = depth ? kOutlinePixel : 0.0f;
+    beneath.outside_weight = options.cloth_weight;
+    beneath.cloth_margin_m = options.cloth_margin_m;
+    beneath.shape_weight = options.dressed_shape_weight;
+    beneath.from = 0.6, beneath.to = 1.0;
+    refine(observations, beneath, options, rows, result);
 }
 
 FitResult Fitter::fit(std::span<const Observation> observations, const FitOptions& options,
@@ -229,6 +248,10 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
     medium.outline_weight = kOutlinePixel;
     medium.from = 0.4, medium.to = 0.6;
     refine(medium_points, medium, options, rows, result);
+    if (options.dressed) {
+        find_beneath(observations, depth, options, rows, result);
+        return result;
+    }
     Stage fine{0, 8, {0.06f, depth ? 0.06f : 0.03f}, {0.03f, depth ? 0.03f : 0.01f}};
     fine.along_rays = depth;
     fine.outline_weight = kOutlinePixel;

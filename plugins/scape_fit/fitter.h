@@ -16,6 +16,9 @@ struct FitOptions {
     CameraTrust camera;              ///< how far cameras may be corrected
     std::optional<geometry::Plane> floor; ///< feet that are near it stand on it
     bool dressed = false;            ///< cloth may lie between skin and points
+    float cloth_weight = 0.03f;         ///< of points outside the body against those inside it
+    float cloth_margin_m = 0.002f;      ///< that count in full nevertheless
+    double dressed_shape_weight = 0.05; ///< of the prior beneath clothes
     bool use_free_form = true;      ///< move onto detail that the components cannot show
     FreeFormOptions free_form;
     std::vector<Vec3f> ups{Vec3f::UnitY()}; ///< directions that may be up
@@ -47,6 +50,9 @@ class Fitter {
     struct Stage;
     void refine(std::span<const Observation> observations, const Stage& stage,
                 const FitOptions& options, const RowLoop& rows, FitResult& result);
+
+    void find_beneath(std::span<const Observation> observations, bool depth,
+                      const FitOptions& options, const RowLoop& rows, FitResult& result);
 
     const FitModel& model_;
     StartLibrary library_;

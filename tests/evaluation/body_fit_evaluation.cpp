@@ -36,7 +36,7 @@ struct Settings {
     int first = 0, count = 1000;
     fs::path json;
     double shape_weight = 0.02;
-    double information = 5e8, deviation = 0.004, correlation = 0.15;
+    double information = 1.5e8, deviation = 0.004, correlation = 0.15;
     bool free_form = true;
     bool cameras = false;
     bool scan = false;
