@@ -77,16 +77,19 @@ std::vector<std::string> package_names(const std::string& name) {
         return text;
     };
     std::vector<std::string> out = {name};
-    for (const auto& [less, more] : {std::pair{"less", "more"}, {"min", "max"},
-                                     {"deflate", "inflate"}}) {
+    for (const auto& [less, more] :
+         {std::pair{"less", "more"}, {"min", "max"}, {"deflate", "inflate"}}) {
         if (name.ends_with("decr")) out.push_back(replaced(name, "decr", less));
         if (name.ends_with("incr")) out.push_back(replaced(name, "incr", more));
     }
     std::string old = name;
     if (name.ends_with("incr")) old = replaced(name, "incr", "increase");
     if (name.ends_with("decr")) old = replaced(name, "decr", "decrease");
-    for (const auto& [now, then] : {std::pair{"-circ", "circ"}, {"-circ", ""}, {"-dist", ""},
-                                    {"-length", "lenght"}, {"-height", "height"}})
+    for (const auto& [now, then] : {std::pair{"-circ", "circ"},
+                                    {"-circ", ""},
+                                    {"-dist", ""},
+                                    {"-length", "lenght"},
+                                    {"-height", "height"}})
         out.push_back(replaced(old, now, then));
     return out;
 }

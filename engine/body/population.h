@@ -34,7 +34,7 @@ struct Population {
     std::vector<Person> matched; ///< their statistics are the survey's
     std::vector<Person> heavy;
     std::vector<Person> unseen;
-    std::size_t dropped = 0; ///< people that no start led to the measurements asked for
+    std::size_t dropped = 0;          ///< people that no start led to the measurements asked for
     std::array<Statistics, 2> survey; ///< of all its rows, in the order of kSexes
 };
 
