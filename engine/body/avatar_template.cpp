@@ -91,7 +91,7 @@ BaseShape template_shape(const MakeHumanData& data) {
     return make_base_shape(data, template_recipe());
 }
 
-AvatarTemplate make_avatar_template(const MakeHumanData& data) {
+AvatarTemplate make_avatar_template(const MakeHumanData& data, float coarseness) {
     const BaseShape shape = template_shape(data);
     AvatarTemplate out;
     out.skeleton = shape.skeleton;
@@ -114,12 +114,16 @@ AvatarTemplate make_avatar_template(const MakeHumanData& data) {
         }
         used.triangles.push_back(t);
     }
-    const geometry::TriangleMesh outer = geometry::closed_outer_surface(
-        used, kGridSpacing, [&](const Vec3f& p) { return closing_radius(shape.skeleton, p); });
+    const geometry::TriangleMesh outer =
+        geometry::closed_outer_surface(used, coarseness * kGridSpacing, [&](const Vec3f& p) {
+            return closing_radius(shape.skeleton, p);
+        });
     const geometry::SurfaceProbe nearest(outer.positions, outer.triangles);
     geometry::RemeshOptions options;
     options.border_on_x0 = true;
-    options.edge_length = [&](const Vec3f& p) { return edge_length(shape.skeleton, p); };
+    options.edge_length = [&](const Vec3f& p) {
+        return coarseness * edge_length(shape.skeleton, p);
+    };
     options.project = [&](const Vec3f& p) { return nearest.nearest(p).point; };
     const auto half = geometry::remesh(geometry::clip_to_left_half(outer), options);
     out.half = half.positions.size();

@@ -3,6 +3,7 @@
 #include "core/json.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -31,24 +32,66 @@ std::string read_text(const fs::path& file) {
     return text.str();
 }
 
-/// Older names of the package for a target named as in the release, most specific first:
+/// The end of a target's name in the release, and what the package has instead.
+struct OlderName {
+    std::string_view now, then;
+};
+/// Found by comparing the offsets themselves; mh_1-0_modifier_mapping.csv tells only some of them.
+constexpr auto kOlderNames = std::to_array<OlderName>({
+    {"arm-fat-decr", "arm-skinny"},
+    {"arm-fat-incr", "arm-fat"},
+    {"leg-fat-decr", "leg-skinny"},
+    {"leg-fat-incr", "leg-fat"},
+    {"-leg-valgus-decr", "-leg-genu-varun"},
+    {"-leg-valgus-incr", "-leg-genu-valgus"},
+    {"head-fat-decr", "head-skinny"},
+    {"head-fat-incr", "head-fat"},
+    {"stomach-tone-decr", "stomach-tone-incr"}, // the two were exchanged later
+    {"stomach-tone-incr", "stomach-tone-decr"},
+    {"/torso-trans-backward", "/torso-trans-depth-backward"},
+    {"/torso-trans-forward", "/torso-trans-depth-forward"},
+    {"/neck-trans-backward", "/neck-trans-depth-backward"},
+    {"/neck-trans-forward", "/neck-trans-depth-forward"},
+    {"chin-bones-decr", "chin-bones-in"},
+    {"chin-bones-incr", "chin-bones-out"},
+    {"cheek-bones-decr", "cheek-bones-in"},
+    {"cheek-bones-incr", "cheek-bones-out"},
+    {"forehead-temple-decr", "forehead-temple-in"},
+    {"forehead-temple-incr", "forehead-temple-out"},
+    {"nose-volume-decr", "nose-volume-point"},
+    {"nose-volume-incr", "nose-volume-potato"},
+    {"nose-hump-decr", "nose-hump-lesshump"},
+    {"nose-hump-incr", "nose-hump-morehump"},
+});
+
+/// Names that the package may have for a target named as in the release, most specific first:
 /// measure-neck-circ-incr was measure-neckcirc-increase, measure-bust-circ-incr
-/// measure-bust-increase.
+/// measure-bust-increase, chin-width-incr chin-width-max.
 std::vector<std::string> package_names(const std::string& name) {
+    for (const OlderName& older : kOlderNames)
+        if (name.ends_with(older.now))
+            return {name.substr(0, name.size() - older.now.size()) + std::string(older.then)};
     const auto replaced = [](std::string text, std::string_view from, std::string_view to) {
         if (const auto at = text.rfind(from); at != std::string::npos)
             text.replace(at, from.size(), to);
         return text;
     };
+    std::vector<std::string> out = {name};
+    for (const auto& [less, more] :
+         {std::pair{"less", "more"}, {"min", "max"}, {"deflate", "inflate"}}) {
+        if (name.ends_with("decr")) out.push_back(replaced(name, "decr", less));
+        if (name.ends_with("incr")) out.push_back(replaced(name, "incr", more));
+    }
     std::string old = name;
     if (name.ends_with("incr")) old = replaced(name, "incr", "increase");
     if (name.ends_with("decr")) old = replaced(name, "decr", "decrease");
-    return {name,
-            replaced(old, "-circ", "circ"),
-            replaced(old, "-circ", ""),
-            replaced(old, "-dist", ""),
-            replaced(old, "-length", "lenght"),
-            replaced(old, "-height", "height")};
+    for (const auto& [now, then] : {std::pair{"-circ", "circ"},
+                                    {"-circ", ""},
+                                    {"-dist", ""},
+                                    {"-length", "lenght"},
+                                    {"-height", "height"}})
+        out.push_back(replaced(old, now, then));
+    return out;
 }
 
 /// Bones of `rig` sorted so that parents stand before their children, by name within that.

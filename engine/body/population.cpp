@@ -13,6 +13,9 @@ namespace {
 constexpr int kRounds = 10;
 constexpr double kMatchedError = 0.03, kGuideError = 0.5; // tolerated, in deviations
 constexpr double kSolved = 0.02;                          // largest miss of a matched measure
+// A person that misses by more is tried again from another start, and left out after so many.
+constexpr double kAccepted = 0.2;
+constexpr int kStarts = 5;
 constexpr int kStature = 0, kWeight = 1;
 constexpr double kUsualIndex = 25.0; // kg/m^2, of the data's average weight
 
@@ -108,13 +111,13 @@ Person PeopleMaker::make(Sex sex, const Eigen::VectorXd& wanted, const Eigen::Ve
         out.coordinates = basis_.coordinates(amounts);
         const auto measured = paths_.measure(unfold(avatar_, out.coordinates));
         out.measures.resize(n);
-        double worst = 0.0;
+        out.miss = 0.0;
         for (int m = 0; m < n; ++m) {
             out.measures[m] = measured[static_cast<std::size_t>(m)].value;
             if (measures[static_cast<std::size_t>(m)].matched)
-                worst = std::max(worst, std::abs(wanted[m] - out.measures[m]) / deviation[m]);
+                out.miss = std::max(out.miss, std::abs(wanted[m] - out.measures[m]) / deviation[m]);
         }
-        if (worst < kSolved || round == kRounds) return out;
+        if (out.miss < kSolved || round == kRounds) return out;
 
         // min |x - start|^2 in the metric of `give` + |J dx - missing|^2 / error^2, by its dual.
         const Eigen::MatrixXd by_modifier = modifiers_.slopes(out.modifiers);
@@ -194,11 +197,18 @@ Population make_population(const PeopleMaker& maker, const PopulationOptions& op
         const Wish& wish = wishes[i];
         // Each person has a sequence of their own, so that the order of work does not matter.
         Random traits(Random(options.seed + 1 + i).next());
-        (*wish.list)[wish.place] = maker.make(wish.sex, wish.measures, wish.deviation, traits);
+        Person best = maker.make(wish.sex, wish.measures, wish.deviation, traits);
+        for (int start = 1; start < kStarts && best.miss > kAccepted; ++start) {
+            Person other = maker.make(wish.sex, wish.measures, wish.deviation, traits);
+            if (other.miss < best.miss) best = std::move(other);
+        }
+        (*wish.list)[wish.place] = std::move(best);
         const std::lock_guard lock(guard);
         if (++done % 50 == 0)
             options.progress(static_cast<double>(done) / static_cast<double>(wishes.size()));
     });
+    for (auto* list : {&out.matched, &out.heavy, &out.unseen})
+        out.dropped += std::erase_if(*list, [](const Person& p) { return p.miss > kAccepted; });
     return out;
 }
 

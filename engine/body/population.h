@@ -17,6 +17,7 @@ struct Person {
     Eigen::VectorXd modifiers;   ///< (modifiers)
     Eigen::VectorXf coordinates; ///< see TargetBasis
     Eigen::VectorXd measures;    ///< as read on the body, in the order of `ansur_measures`
+    double miss = 0.0;           ///< largest of a matched measure, in deviations
 };
 
 struct PopulationOptions {
@@ -33,6 +34,7 @@ struct Population {
     std::vector<Person> matched; ///< their statistics are the survey's
     std::vector<Person> heavy;
     std::vector<Person> unseen;
+    std::size_t dropped = 0;          ///< people that no start led to the measurements asked for
     std::array<Statistics, 2> survey; ///< of all its rows, in the order of kSexes
 };
 

@@ -76,7 +76,7 @@ PoseTables load_pose_tables(const BodyModel& model) {
     const std::size_t nf = model.rest.triangles.size(), nv = model.rest.positions.size();
     PoseTables out;
     out.deformation.joints = unpack(scape, nf, scape_file.string());
-    out.deformation.weights = unstack<Eigen::Matrix<float, 9, kPoseFeatures>>(scape, nf);
+    out.deformation.weights = unstack<Eigen::Matrix<float, 6, kPoseFeatures>>(scape, nf);
     out.correctives.joints = unpack(baked, nv, baked_file.string());
     out.correctives.weights = unstack<Eigen::Matrix<float, 3, kPoseFeatures>>(baked, nv);
     return out;

@@ -2,6 +2,7 @@
 
 #include "body/joint_limits.h"
 #include "body/skinning.h"
+#include "core/bytes.h"
 #include "core/parallel.h"
 #include "geometry/laplacian.h"
 
@@ -12,6 +13,9 @@
 
 namespace toile::body {
 namespace {
+
+constexpr const char* kReportFile = "training.json";
+constexpr std::size_t kMaxReport = 1u << 20;
 
 using FeatureSquare = Eigen::Matrix<double, kPoseFeatures, kPoseFeatures>;
 
@@ -70,7 +74,7 @@ PoseDeformation fit_deformation(const BodyModel& model, const std::vector<Exampl
     const ScapeModel plain(model, {});
     PoseDeformation out;
     out.joints = nearest_joints(model, triangles);
-    out.weights.assign(triangles.size(), Eigen::Matrix<float, 9, kPoseFeatures>::Zero());
+    out.weights.assign(triangles.size(), Eigen::Matrix<float, 6, kPoseFeatures>::Zero());
     std::vector<Mat3f> rest_inverse;
     for (const auto& t : triangles)
         rest_inverse.push_back(frame(model.rest.positions, t).inverse());
@@ -84,8 +88,9 @@ PoseDeformation fit_deformation(const BodyModel& model, const std::vector<Exampl
         for (std::size_t t = 0; t < triangles.size(); ++t) {
             const Mat3f Q = rotations[t].toRotationMatrix().transpose() *
                             frame(example.relaxed, triangles[t]) * rest_inverse[t];
-            const Mat3f change = Q - Mat3f::Identity();
-            out.weights[t] += Eigen::Map<const Eigen::Matrix<float, 9, 1>>(change.data()) *
+            const Tangents change =
+                (Q - Mat3f::Identity()) * tangents(model.rest.positions, triangles[t]);
+            out.weights[t] += Eigen::Map<const Eigen::Matrix<float, 6, 1>>(change.data()) *
                               pose_features(turns, out.joints[t]).transpose();
         }
     }
@@ -210,7 +215,8 @@ TrainedPose train_pose(const BodyModel& model, const PoseOptions& options) {
     Random random(options.seed + 2000000);
     for (int i = 0; i < options.baked_poses; ++i)
         poses.push_back(random_pose(model.skeleton, random));
-    out.tables.correctives = fit_correctives(model, out.tables.deformation, poses, options.ridge);
+    out.tables.correctives =
+        fit_correctives(model, out.tables.deformation, poses, options.baked_ridge);
     out.report = test(model, out, tests, examples.size());
     return out;
 }
@@ -220,6 +226,12 @@ nlohmann::ordered_json train_pose_tables(const std::filesystem::path& folder,
     const BodyModel model = load_body_model(folder);
     const TrainedPose trained = train_pose(model, options);
     save_pose_tables(trained.tables, model);
+    const std::filesystem::path file = folder / kReportFile;
+    if (std::filesystem::exists(file)) {
+        auto report = nlohmann::ordered_json::parse(read_bytes(file, kMaxReport));
+        report["pose"] = trained.report;
+        write_text(file, report.dump(2) + "\n");
+    }
     return trained.report;
 }
 

@@ -85,6 +85,15 @@ std::vector<NearJoints> nearest_joints(const BodyModel& model,
     return out;
 }
 
+Tangents tangents(std::span<const Vec3f> positions, const Triangle& triangle) {
+    const Vec3f along = positions[triangle[1]] - positions[triangle[0]];
+    const Vec3f normal = along.cross(positions[triangle[2]] - positions[triangle[0]]);
+    Tangents out;
+    out.col(0) = along.normalized();
+    out.col(1) = normal.cross(along).normalized();
+    return out;
+}
+
 float held_by_one_bone(const std::array<float, 4>& weights) noexcept {
     return smooth_step(kLoose, kTight, *std::max_element(weights.begin(), weights.end()));
 }
@@ -103,6 +112,7 @@ ScapeModel::ScapeModel(const BodyModel& model, PoseDeformation deformation)
         const float doubled = std::max(cross.norm(), 1e-12f);
         const Vec3f normal = cross / doubled;
         c.area = 0.5f * doubled;
+        c.tangents = tangents(rest_, t);
         c.gradient = {normal.cross(d - b) / doubled, normal.cross(a - d) / doubled,
                       normal.cross(b - a) / doubled};
         mean_weights(skin_, t, c.joints, c.weights);
@@ -158,6 +168,12 @@ std::vector<Mat3f> ScapeModel::shape_matrices(std::span<const Vec3f> positions) 
     return out;
 }
 
+Mat3f ScapeModel::flesh_change(std::size_t triangle, const RotationVectors& turns) const {
+    const Eigen::Matrix<float, 6, 1> q =
+        deformation_.weights[triangle] * pose_features(turns, deformation_.joints[triangle]);
+    return Eigen::Map<const Tangents>(q.data()) * corners_[triangle].tangents.transpose();
+}
+
 ScapeBody::ScapeBody(const ScapeModel& model, BodyShape shape)
     : model_(model), shape_(std::move(shape)), S_(model.shape_matrices(shape_.positions)),
       matrices_(S_.size()), rotations_(S_.size()), places_(shape_.positions.size()) {}
@@ -170,11 +186,7 @@ void ScapeBody::pose(const Pose& pose, std::span<Vec3f> positions) {
     const RotationVectors turns = rotation_vectors(pose);
     for (std::size_t t = 0; t < matrices_.size(); ++t) {
         Mat3f M = S_[t];
-        if (!learned.weights.empty()) {
-            const Eigen::Matrix<float, 9, 1> q =
-                learned.weights[t] * pose_features(turns, learned.joints[t]);
-            M += S_[t] * Eigen::Map<const Mat3f>(q.data());
-        }
+        if (!learned.weights.empty()) M += S_[t] * model_.flesh_change(t, turns);
         matrices_[t] = rotations_[t].toRotationMatrix() * M;
     }
     model_.solve(matrices_, places_, positions);

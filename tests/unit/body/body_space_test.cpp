@@ -151,6 +151,37 @@ TEST_F(AdultPose, MovesRigidlyWithItsHips) {
     EXPECT_LT(farthest(posed_, other_), 2e-4);
 }
 
+TEST_F(AdultPose, WhatMatricesDoToNormalsMovesNothing) {
+    std::vector<Mat3f> matrices(model_.rest.triangles.size(), Mat3f::Identity());
+    scape_.solve(matrices, model_.rest.positions, posed_);
+    EXPECT_LT(farthest(posed_, model_.rest.positions), 1e-4);
+    for (std::size_t t = 0; t < matrices.size(); ++t) {
+        const Tangents E = tangents(model_.rest.positions, model_.rest.triangles[t]);
+        EXPECT_LT((E.transpose() * E - Eigen::Matrix2f::Identity()).norm(), 1e-5f);
+        const Vec3f normal = E.col(0).cross(E.col(1));
+        matrices[t] += 0.5f * Vec3f(1, 2, 3) * normal.transpose();
+    }
+    scape_.solve(matrices, model_.rest.positions, other_);
+    EXPECT_LT(farthest(posed_, other_), 1e-4);
+}
+
+TEST_F(AdultPose, BakedFormIsNearSCAPE) {
+    // Its own test poses are in training.json; here other ones, and another shape than it learned.
+    Random random(12);
+    ScapeBody body(scape_, shape_);
+    const CorrectiveSkin baked(shape_, model_.skin, tables_.correctives);
+    double sum = 0.0;
+    constexpr int kPoses = 8;
+    for (int i = 0; i < kPoses; ++i) {
+        const Pose pose = random_pose(shape_.skeleton, random);
+        body.pose(pose, posed_);
+        baked.pose(pose, other_);
+        for (std::size_t v = 0; v < posed_.size(); ++v)
+            sum += static_cast<double>((posed_[v] - other_[v]).norm());
+    }
+    EXPECT_LT(sum / static_cast<double>(kPoses * posed_.size()), 0.002);
+}
+
 TEST_F(AdultPose, TablesOfAnotherModelAreRefused) {
     BodyModel other = model_;
     other.rest.triangles.pop_back();
