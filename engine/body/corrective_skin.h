@@ -29,7 +29,8 @@ class CorrectiveSkin {
         std::array<float, 4> weights;
         std::array<std::uint16_t, 4> joints;
         NearJoints near;
-        Eigen::Matrix<float, 3, kPoseFeatures> corrective;
+        /// Row by row, so that a row meets the features in whole vector registers.
+        Eigen::Matrix<float, 3, kPoseFeatures, Eigen::RowMajor> corrective;
     };
     BodyShape shape_;
     std::vector<Vertex> vertices_;
