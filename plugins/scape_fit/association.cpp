@@ -11,7 +11,7 @@ using geometry::kNoTriangle;
 
 constexpr float kFullCosine = 0.6f;   // from here on a slanting surface counts in full
 constexpr float kFreeSpace = 0.06f;   // metres that a reading must lie behind a vertex
-constexpr float kFreeMargin = 0.008f; // a silhouette is not known better, metres
+constexpr float kFreePixels = 1.5f; // a silhouette is not known better
 constexpr float kLostReach = 0.05f;   // of points whose ray misses the model, metres
 constexpr float kLostWeight = 0.5f;
 constexpr std::uint32_t kGrain = 2048;
@@ -137,6 +137,7 @@ void Associator::pull_from_empty(const ObservedPoints& observed, const Associati
     if (options.empty_weight <= 0.0f || (!seen.complete && !seen.view)) return;
     for (std::uint32_t v = 0; v < level_.vertices.size(); ++v) {
         const Vec3f& x = posed_->positions[v];
+        float margin = 0.0f;
         const Vec3f as_seen =
             seen.eye ? observed.correction.undo(x, *seen.eye) : x;
         if (seen.view) {
@@ -147,6 +148,7 @@ void Associator::pull_from_empty(const ObservedPoints& observed, const Associati
                                             static_cast<std::size_t>(seen.view->depth.width) +
                                         static_cast<std::size_t>(sight->x)];
             if (!(reading > sight->depth + kFreeSpace)) continue; // hidden, or no reading
+            margin = kFreePixels * sight->depth / static_cast<float>(seen.view->camera.fx);
         }
         const auto near = observed.tree.nearest(as_seen);
         if (!seen.rim.empty() && seen.rim[near.index] != 0) continue; // a hole, not empty space
@@ -164,7 +166,8 @@ void Associator::pull_from_empty(const ObservedPoints& observed, const Associati
             pair.normal = seen.normals[near.index];
             pair.distance = pair.normal.dot(offset);
         }
-        if (seen.view) pair.distance = std::max(0.0f, pair.distance - kFreeMargin);
+        pair.distance -= margin;
+        if (seen.view && pair.distance <= 0.0f) continue;
         pair.weight = options.empty_weight * level_.areas[v] * level_.trust[v] *
                       geman_mcclure(pair.distance, 2.0f * options.scale_m);
         out.pairs.push_back(pair);

@@ -16,7 +16,7 @@ constexpr double kLeastPairedDepth = 0.6; // grazing pixels have no partner
 constexpr double kMostRmsDepth = 0.045;
 constexpr double kOneSideWeight = 0.1; // of the prior, see FitOptions
 constexpr double kLeastSeen = 0.12; // of the body's area: less says too little about it
-constexpr double kFarthest = 9.0;   // deviations a coefficient may have
+constexpr double kFarthest = 30.0;  // deviations a coefficient may have: overfitting takes a dozen
 // A stationary rig that was calibrated once: degrees, millimetres and depth scale that may be off.
 constexpr CameraTrust kCalibrated{0.0035, 0.005, 0.003};
 constexpr CameraTrust kLooselyPlaced{0.05, 0.05, 0.003};

@@ -247,7 +247,16 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
     medium.along_rays = depth;
     medium.outline_weight = kOutlinePixel;
     medium.from = 0.4, medium.to = 0.6;
-    refine(medium_points, medium, options, rows, result);
+    // Cameras are believed until the pose is right: else they would take up its errors.
+    FitOptions fixed = options;
+    fixed.camera = {};
+    refine(medium_points, medium, fixed, rows, result);
+    if (options.camera.turn_rad > 0.0) {
+        medium.reach_m[0] = medium.reach_m[1], medium.scale_m[0] = medium.scale_m[1];
+        medium.from = 0.5;
+        medium.empty_weight = 0.0f;
+        refine(medium_points, medium, options, rows, result);
+    }
     if (options.dressed) {
         find_beneath(observations, depth, options, rows, result);
         return result;
@@ -255,6 +264,7 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
     Stage fine{0, 8, {0.06f, depth ? 0.06f : 0.03f}, {0.03f, depth ? 0.03f : 0.01f}};
     fine.along_rays = depth;
     fine.outline_weight = kOutlinePixel;
+    if (depth) fine.empty_weight = 0.0f; // outlines say it without bias
     fine.from = 0.6, fine.to = 1.0;
     fine.free_form = options.use_free_form;
     refine(observations, fine, options, rows, result);

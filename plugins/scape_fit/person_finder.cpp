@@ -96,8 +96,17 @@ void remove_walls(std::span<const Vec3f> points, const Vec3f& up, std::vector<st
                 return std::abs(plane.normal.dot(p) - plane.offset) < kOnWall;
             }));
         };
+        // Nothing stands behind a wall; there is something on both sides of a person's middle.
+        const auto of_wall = [&](const geometry::Plane& plane) {
+            std::array<std::size_t, 2> beside{};
+            for (const Vec3f& p : test) {
+                const float off = plane.normal.dot(p) - plane.offset;
+                if (std::abs(off) > kOnWall) ++beside[off > 0.0f ? 1 : 0];
+            }
+            return std::min(beside[0], beside[1]) * 50 > test.size() ? 0.0 : count_on(plane);
+        };
         const auto found = best_plane(
-            test, [&](const Vec3f& n) { return std::abs(n.dot(up)) < 0.2f; }, count_on);
+            test, [&](const Vec3f& n) { return std::abs(n.dot(up)) < 0.2f; }, of_wall);
         if (!found || count_on(*found) < kWallShare * static_cast<double>(test.size())) return;
         const geometry::Plane plane = refined(*found, test, kOnWall);
         // Wide and high: a person's back is neither.

@@ -1,0 +1,148 @@
+// Depth pictures in, people out.
+#include "people.h"
+#include "support/throws.h"
+
+namespace toile::scape_fit {
+namespace {
+
+constexpr int kWidth = 180, kHeight = 240;
+
+/// A camera at `place` that looks level at the middle of the room.
+FitCamera camera_at(const Vec3f& place) {
+    FitCamera out;
+    out.intrinsics.width = kWidth;
+    out.intrinsics.height = kHeight;
+    out.intrinsics.fx = out.intrinsics.fy = 200.0;
+    out.intrinsics.cx = 0.5 * (kWidth - 1);
+    out.intrinsics.cy = 0.5 * (kHeight - 1);
+    const Vec3f back = Vec3f(place.x(), 0.0f, place.z()).normalized();
+    Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
+    pose.linear().col(0) = Vec3f::UnitY().cross(back);
+    pose.linear().col(1) = Vec3f::UnitY();
+    pose.linear().col(2) = back;
+    pose.translation() = place;
+    out.world_from_camera = pose.cast<double>();
+    return out;
+}
+
+/// Exact depths of a scene; a room of 8 m with a floor around it.
+imaging::DepthImage depth_of(const FitCamera& camera, const geometry::TriangleMesh* person) {
+    geometry::TriangleMesh scene = test::box(Vec3f(-4.0f, 0.0f, -4.0f), Vec3f(4.0f, 3.0f, 4.0f));
+    if (person != nullptr) add(scene, *person);
+    const geometry::NearestSurface surface(scene.positions, scene.triangles);
+    imaging::DepthImage out;
+    out.width = kWidth;
+    out.height = kHeight;
+    const Eigen::Isometry3f place = camera.world_from_camera->cast<float>();
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const auto ray = imaging::unproject(camera.intrinsics, Eigen::Vector2d(x, y), 1.0);
+            const auto hit =
+                surface.first_hit(place.translation(), place.linear() * ray->cast<float>());
+            out.metres.push_back(hit ? hit->distance : std::nanf(""));
+        }
+    return out;
+}
+
+std::vector<FitCamera> four_sides() {
+    return {camera_at(Vec3f(0.0f, 1.0f, 2.4f)), camera_at(Vec3f(2.4f, 1.0f, 0.0f)),
+            camera_at(Vec3f(0.0f, 1.0f, -2.4f)), camera_at(Vec3f(-2.4f, 1.0f, 0.0f))};
+}
+
+FitSession& session() {
+    static FitSession one(adult());
+    return one;
+}
+
+void show(const std::vector<FitCamera>& cameras, const geometry::TriangleMesh* person) {
+    std::vector<imaging::DepthImage> depths;
+    for (const FitCamera& camera : cameras)
+        depths.push_back(depth_of(camera, person));
+    session().add_instant(std::move(depths));
+}
+
+/// Mean distance of the true skin from what was found, millimetres; hands, face and feet apart.
+double error_mm(const Somebody& who, const PosedLevel& found) {
+    const FitLevel& full = adult().level(0);
+    std::vector<Vec3f> skin;
+    for (std::size_t v = 0; v < full.vertices.size(); ++v)
+        if (full.trust[v] > 0.99f && who.surface.positions[v].y() > 0.1f)
+            skin.push_back(who.surface.positions[v]);
+    return 1000.0 * mean_distance(skin, {found.positions, {}, full.triangles});
+}
+
+TEST(DepthFit, FourSidesGiveTheBody) {
+    const Somebody who;
+    session().begin(four_sides());
+    show(four_sides(), &who.surface);
+    session().fit({}, &serial_rows);
+    EXPECT_LT(error_mm(who, session().surface(0)), 2.5) << session().report().dump(1);
+    EXPECT_TRUE(session().report().at("floor_found").get<bool>());
+    EXPECT_GT(session().report().at("seen_share").get<double>(), 0.8);
+}
+
+TEST(DepthFit, ACameraThatIsOffIsPutRight) {
+    const Somebody who;
+    std::vector<FitCamera> cameras = four_sides(), told = cameras;
+    told[1].world_from_camera->pretranslate(Vec3d(0.0, 0.0, 0.012));
+    session().begin(told);
+    show(cameras, &who.surface);
+    session().fit({}, &serial_rows);
+    const CameraCorrection& camera = session().result().state.cameras[1];
+    EXPECT_NEAR(camera.shift.z() + 2.4 * camera.turn.y(), -0.012, 0.006);
+    EXPECT_LT(error_mm(who, session().surface(0)), 4.0);
+}
+
+TEST(DepthFit, OneCameraThatDoesNotKnowWhereItStands) {
+    const Somebody who;
+    const FitCamera camera = camera_at(Vec3f(0.0f, 1.0f, 2.6f));
+    FitCamera lost = camera;
+    lost.world_from_camera.reset();
+    session().begin({lost});
+    session().add_instant({depth_of(camera, &who.surface)});
+    session().fit({}, &serial_rows);
+    // In the camera's own frame.
+    PosedLevel found = session().surface(0);
+    for (Vec3f& p : found.positions)
+        p = camera.world_from_camera->cast<float>() * p;
+    std::vector<Vec3f> front;
+    std::vector<Vec3f> normals(who.surface.positions.size());
+    geometry::vertex_normals(who.surface.positions, who.surface.triangles, normals);
+    for (std::size_t v = 0; v < normals.size(); ++v)
+        if (normals[v].z() > 0.4f) front.push_back(who.surface.positions[v]);
+    EXPECT_LT(1000.0 *
+                  mean_distance(front, {found.positions, {}, adult().level(0).triangles}),
+              6.0);
+    EXPECT_FALSE(session().report().at("calibrated").get<bool>());
+}
+
+TEST(DepthFit, AnEmptyRoomIsRefused) {
+    session().begin(four_sides());
+    show(four_sides(), nullptr);
+    EXPECT_ERROR(session().fit({}, &serial_rows), "no person");
+}
+
+TEST(DepthFit, PicturesWithoutReadingsAreRefused) {
+    session().begin({camera_at(Vec3f(0.0f, 1.0f, 2.4f))});
+    imaging::DepthImage nothing;
+    nothing.width = kWidth;
+    nothing.height = kHeight;
+    nothing.metres.assign(kWidth * kHeight, std::nanf(""));
+    session().add_instant({nothing});
+    EXPECT_ERROR(session().fit({}, &serial_rows), "no reading within");
+    nothing.width = 3;
+    EXPECT_ERROR(session().add_instant({nothing}), "camera's size");
+    session().begin({});
+    EXPECT_ERROR(session().fit({}, &serial_rows), "nothing was fed");
+}
+
+TEST(DepthFit, SeveralCamerasMustSayWhereTheyStand) {
+    auto cameras = four_sides();
+    cameras[2].world_from_camera.reset();
+    session().begin(cameras);
+    show(four_sides(), nullptr);
+    EXPECT_ERROR(session().fit({}, &serial_rows), "extrinsic.json");
+}
+
+} // namespace
+} // namespace toile::scape_fit
