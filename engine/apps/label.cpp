@@ -27,10 +27,9 @@ void fill(imaging::Image& picture, int x, int y, int width, int height,
           const std::array<std::uint8_t, 3>& color) {
     for (int row = std::max(0, y); row < std::min(picture.height, y + height); ++row)
         for (int column = std::max(0, x); column < std::min(picture.width, x + width); ++column) {
-            auto* pixel = picture.pixels.data() +
-                          4 * (static_cast<std::size_t>(row) *
-                                   static_cast<std::size_t>(picture.width) +
-                               static_cast<std::size_t>(column));
+            auto* pixel = picture.pixels.data() + 4 * (static_cast<std::size_t>(row) *
+                                                           static_cast<std::size_t>(picture.width) +
+                                                       static_cast<std::size_t>(column));
             std::copy(color.begin(), color.end(), pixel);
         }
 }

@@ -26,15 +26,15 @@ struct MeasureCommand {
 
 // Those that size charts ask for, and that can be told apart in one picture.
 const std::vector<std::string> kDrawn = {
-    "neck_girth",        "bust_girth",  "under_bust_girth",  "waist_girth",
-    "hip_girth",         "thigh_girth", "knee_girth",        "calf_girth",
-    "upper_arm_girth",   "wrist_girth", "back_waist_length", "inside_leg_length",
+    "neck_girth",      "bust_girth",  "under_bust_girth",  "waist_girth",
+    "hip_girth",       "thigh_girth", "knee_girth",        "calf_girth",
+    "upper_arm_girth", "wrist_girth", "back_waist_length", "inside_leg_length",
 };
 
 /// An avatar, a body.json, or a mesh: of that, the body found in it.
 body::BodyModel body_of(const MeasureCommand& command, const GlobalOptions& global) {
     const fs::path path(command.body);
-    if (body::is_body_file(path)) return body::model_of(body::load_body_file(path));
+    if (body::is_body_file(path)) return body::load_body(path);
     if (!path.has_extension() || fs::is_directory(path))
         return body::load_body_model(fs::is_directory(path) ? path
                                                             : body::find_avatar(command.body));
@@ -50,9 +50,9 @@ body::BodyModel body_of(const MeasureCommand& command, const GlobalOptions& glob
 void print_table(std::span<const body::LaidMeasurement> measured) {
     std::cout << std::fixed << std::setprecision(1);
     for (const body::LaidMeasurement& m : measured)
-        std::cout << std::left << std::setw(30) << m.definition->name << std::right
-                  << std::setw(7) << 100.0 * m.reading.value_m << " cm  confidence "
-                  << std::setprecision(2) << m.reading.confidence << std::setprecision(1) << "\n";
+        std::cout << std::left << std::setw(30) << m.definition->name << std::right << std::setw(7)
+                  << 100.0 * m.reading.value_m << " cm  confidence " << std::setprecision(2)
+                  << m.reading.confidence << std::setprecision(1) << "\n";
 }
 
 void measure(const MeasureCommand& command, const GlobalOptions& global) {
@@ -96,7 +96,8 @@ void add_measure_commands(CLI::App& app, const GlobalOptions& global) {
                      "A body.json, an avatar, or a scan (a mesh or cloud, in any unit)")
         ->required();
     command->add_flag("--json", options->json, "Machine-readable, metres");
-    command->add_option("--measurement", options->names, "Only these; docs/measurements.md lists them")
+    command
+        ->add_option("--measurement", options->names, "Only these; docs/measurements.md lists them")
         ->type_name("NAME");
     command->add_option("--picture", options->picture, "Draws the tapes on the body")
         ->type_name("FILE");

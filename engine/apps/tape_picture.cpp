@@ -118,8 +118,7 @@ imaging::Image draw_tapes(const body::BodyModel& model,
     for (std::size_t i = 0; i < measurements.size(); ++i) {
         const auto color = color_of(i);
         render::Material material = render::mannequin_material();
-        material.base_color =
-            Vec4f(linear(color[0]), linear(color[1]), linear(color[2]), 1.0f);
+        material.base_color = Vec4f(linear(color[0]), linear(color[1]), linear(color[2]), 1.0f);
         for (const geometry::Loop& tape : measurements[i].reading.tapes) {
             const geometry::TriangleMesh mesh = cord(tape);
             if (!mesh.triangles.empty()) scene.instances.push_back(add(renderer, mesh, material));

@@ -17,8 +17,8 @@ struct TapePictureOptions {
 };
 
 /// `model` at rest; tapes in the same frame. \throw Error
-[[nodiscard]] imaging::Image
-draw_tapes(const body::BodyModel& model, std::span<const body::LaidMeasurement> measurements,
-           const TapePictureOptions& options = {});
+[[nodiscard]] imaging::Image draw_tapes(const body::BodyModel& model,
+                                        std::span<const body::LaidMeasurement> measurements,
+                                        const TapePictureOptions& options = {});
 
 } // namespace toile::apps
