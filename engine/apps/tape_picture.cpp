@@ -11,7 +11,7 @@
 namespace toile::apps {
 namespace {
 
-constexpr float kRadius = 0.004f; // metres: half a tape's thickness as drawn
+constexpr float kRadius = 0.005f; // metres: half a tape's thickness as drawn
 constexpr float kBadge = 10.0f;   // pixels: a number's disc
 
 // Colours that stand apart from skin and from each other.
@@ -198,7 +198,7 @@ imaging::Image draw_tape_sheet(const body::BodyModel& model,
     imaging::Image out = blank(options.columns * options.width, rows * cell);
     TapeScene scene(model, renderer_options(options.width, options.height), false);
     LabelStyle caption;
-    caption.size = 12;
+    caption.size = 11;
     caption.at = LabelStyle::At::middle;
     for (int i = 0; i < count; ++i) {
         const body::LaidMeasurement& m = measurements[static_cast<std::size_t>(i)];
