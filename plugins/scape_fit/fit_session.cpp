@@ -14,6 +14,7 @@ constexpr double kLeastPaired = 0.75;     // of a scan's area within reach of th
 constexpr double kMostRms = 0.02;         // metres, of a scan's points
 constexpr double kLeastPairedDepth = 0.6; // grazing pixels have no partner
 constexpr double kMostRmsDepth = 0.045;
+constexpr double kOneSideWeight = 0.1; // of the prior, see FitOptions
 constexpr double kLeastSeen = 0.12; // of the body's area: less says too little about it
 constexpr double kFarthest = 9.0;   // deviations a coefficient may have
 // A stationary rig that was calibrated once: degrees, millimetres and depth scale that may be off.
@@ -140,6 +141,8 @@ FitSession::Input FitSession::depth_input(const SessionOptions& options, const R
         for (Observation& one : person.observations)
             out.observations.push_back(std::move(one));
     }
+    // From one side little is known of the depth of a body: the prior must tell.
+    if (cameras_.size() == 1 && instants_.size() == 1) out.options.shape_weight = kOneSideWeight;
     out.options.camera = cameras_.size() > 1 ? kCalibrated : CameraTrust{};
     out.options.free_form = {0.004, 0.15, 1.5e8};
     out.notes["cameras"] = cameras_.size();

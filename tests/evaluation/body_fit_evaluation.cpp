@@ -189,6 +189,7 @@ void run(const Settings& settings) {
         if (fs::exists(entry.path() / "person.json")) people.push_back(entry.path());
     std::sort(people.begin(), people.end());
     Errors errors;
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     int done = 0;
     for (std::size_t n = static_cast<std::size_t>(settings.first);
          n < people.size() && done < settings.count; ++n, ++done) {
@@ -220,6 +221,7 @@ void run(const Settings& settings) {
                 observations.push_back(std::move(one));
         }
         options.shape_weight = settings.shape_weight;
+        if (settings.views == 1) options.shape_weight = std::max(options.shape_weight, 0.1);
         options.use_free_form = settings.free_form;
         options.free_form = {settings.deviation, settings.correlation, settings.information};
         if (settings.cameras) options.camera = {0.0035, 0.005, 0.003};
@@ -234,8 +236,27 @@ void run(const Settings& settings) {
         const double core = mean_distance(
             truth, areas, [&](std::size_t v) { return in_core(person.parts[v], person, v); },
             posed.positions, full.triangles);
-        errors.add("surface core", core);
-        errors.add("surface ends",
+        nlohmann::ordered_json row;
+        row["id"] = person.id;
+        row["sex"] = person.woman ? "female" : "male";
+        row["sex_found"] = body::sex_name(result.sex);
+        row["bmi"] = person.bmi;
+        row["stature_m"] = person.lengths.at("stature");
+        row["volume_m3"] = person.volume_m3;
+        row["seconds"] = took;
+        for (const body::GirthPlane& plane : person.girths)
+            row["true_girths_m"][plane.name] = plane.girth;
+        const auto note = [&](const std::string& name, double mm) {
+            errors.add(name, mm);
+            row["errors_mm"][name] = mm;
+        };
+        note("surface core", core);
+        note("surface core back",
+             mean_distance(
+                 posed.positions, vertex_areas(posed.positions, full.triangles),
+                 [&](std::size_t v) { return full.trust[v] > 0.99f; }, truth,
+                 person.rest.triangles));
+        note("surface ends",
                    mean_distance(
                        truth, areas,
                        [&](std::size_t v) { return !in_core(person.parts[v], person, v); },
@@ -249,7 +270,7 @@ void run(const Settings& settings) {
             const auto true_girth = body::girth_in(plane, moved, truth, person.rest.triangles);
             const auto girth = body::girth_in(plane, moved, posed.positions, full.triangles);
             if (true_girth && girth)
-                errors.add("girth " + plane.name, 1000.0 * (*girth - *true_girth));
+                note("girth " + plane.name, 1000.0 * (*girth - *true_girth));
             else
                 std::printf("  no girth %s\n", plane.name.c_str());
         }
@@ -257,16 +278,17 @@ void run(const Settings& settings) {
         float top = 0.0f;
         for (const Vec3f& p : rest.positions)
             top = std::max(top, p.y());
-        errors.add("length stature",
+        note("length stature",
                    1000.0 * (static_cast<double>(top) - person.lengths.at("stature")));
         for (const auto j : {body::Joint::left_upper_arm, body::Joint::left_lower_arm,
                              body::Joint::left_hand, body::Joint::left_upper_leg,
                              body::Joint::left_lower_leg, body::Joint::neck, body::Joint::hips})
-            errors.add("joint " + std::string(body::joint_name(j)),
+            note("joint " + std::string(body::joint_name(j)),
                        1000.0 * static_cast<double>(
                                     (posed.world[static_cast<std::size_t>(j)].translation -
                                      joints[0][static_cast<std::size_t>(j)].translation)
                                         .norm()));
+        rows.push_back(row);
         std::printf("%s%s bmi %.1f: %.2f s, rms %.1f mm, paired %.2f, |c| %.2f, sex %s%s, core "
                     "%.2f mm\n",
                     person.id.c_str(), person.woman ? " w" : " m", person.bmi, took,
@@ -276,6 +298,7 @@ void run(const Settings& settings) {
         std::fflush(stdout);
     }
     print(errors);
+    if (!settings.json.empty()) std::ofstream(settings.json) << rows.dump(1) << "\n";
 }
 
 } // namespace
@@ -292,6 +315,7 @@ int main(int argc, char** argv) {
         else if (key == "--noise") settings.noise = value();
         else if (key == "--pose") settings.poses.emplace_back(value());
         else if (key == "--count") settings.count = std::stoi(value());
+        else if (key == "--json") settings.json = value();
         else if (key == "--first") settings.first = std::stoi(value());
         else if (key == "--weight") settings.shape_weight = std::stod(value());
         else if (key == "--information") settings.information = std::stod(value());
