@@ -156,6 +156,7 @@ void save_body_file(const BodyFile& body, const std::filesystem::path& file) {
     if (!body.fit.is_null()) json["fit"] = body.fit;
     if (!body.detail.empty()) {
         std::vector<std::int64_t> steps;
+        steps.reserve(body.detail.size());
         for (const float d : body.detail)
             steps.push_back(std::llround(static_cast<double>(d) / kDetailStep));
         json["detail"] = steps;
