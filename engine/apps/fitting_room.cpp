@@ -72,7 +72,7 @@ FittingRoom::~FittingRoom() = default;
 std::shared_ptr<const pipeline::BoundaryBody> FittingRoom::load_body(const std::string& id) {
     namespace fs = std::filesystem;
     const fs::path path(id);
-    if (body::is_body_file(path)) return keep(path, body::model_of(body::load_body_file(path)));
+    if (body::is_body_file(path)) return keep(path, body::load_body(path));
     if (path.has_extension() && fs::is_regular_file(path))
         throw Error(id + ": a mesh is fitted before it is dressed: toile fit --scan " + id +
                     " --out body.json; or choose one of " + known(body::list_avatars()));

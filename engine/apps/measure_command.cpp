@@ -6,9 +6,11 @@
 #include "body/measurer.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "render/views.h"
 
 #include <iomanip>
 #include <iostream>
+#include <sstream>
 
 namespace toile::apps {
 namespace {
@@ -18,7 +20,7 @@ namespace fs = std::filesystem;
 struct MeasureCommand {
     std::string body;
     bool json = false;
-    fs::path picture;
+    fs::path picture, sheet;
     std::vector<std::string> names;
     std::string sex;
     TapePictureOptions drawing;
@@ -26,15 +28,15 @@ struct MeasureCommand {
 
 // Those that size charts ask for, and that can be told apart in one picture.
 const std::vector<std::string> kDrawn = {
-    "neck_girth",        "bust_girth",  "under_bust_girth",  "waist_girth",
-    "hip_girth",         "thigh_girth", "knee_girth",        "calf_girth",
-    "upper_arm_girth",   "wrist_girth", "back_waist_length", "inside_leg_length",
+    "neck_girth",      "bust_girth",  "under_bust_girth",  "waist_girth",
+    "hip_girth",       "thigh_girth", "knee_girth",        "calf_girth",
+    "upper_arm_girth", "wrist_girth", "back_waist_length", "inside_leg_length",
 };
 
 /// An avatar, a body.json, or a mesh: of that, the body found in it.
 body::BodyModel body_of(const MeasureCommand& command, const GlobalOptions& global) {
     const fs::path path(command.body);
-    if (body::is_body_file(path)) return body::model_of(body::load_body_file(path));
+    if (body::is_body_file(path)) return body::load_body(path);
     if (!path.has_extension() || fs::is_directory(path))
         return body::load_body_model(fs::is_directory(path) ? path
                                                             : body::find_avatar(command.body));
@@ -50,9 +52,28 @@ body::BodyModel body_of(const MeasureCommand& command, const GlobalOptions& glob
 void print_table(std::span<const body::LaidMeasurement> measured) {
     std::cout << std::fixed << std::setprecision(1);
     for (const body::LaidMeasurement& m : measured)
-        std::cout << std::left << std::setw(30) << m.definition->name << std::right
-                  << std::setw(7) << 100.0 * m.reading.value_m << " cm  confidence "
-                  << std::setprecision(2) << m.reading.confidence << std::setprecision(1) << "\n";
+        std::cout << std::left << std::setw(30) << m.definition->name << std::right << std::setw(7)
+                  << 100.0 * m.reading.value_m << " cm  confidence " << std::setprecision(2)
+                  << m.reading.confidence << std::setprecision(1) << "\n";
+}
+
+/// "anna, 168.0 cm tall".
+std::string title_of(const MeasureCommand& command, const body::BodyModel& model) {
+    const auto stature = model.measurements.find("stature");
+    std::ostringstream out;
+    out << fs::path(command.body).stem().string();
+    if (stature != model.measurements.end())
+        out << std::fixed << std::setprecision(1) << ", " << 100.0 * stature->second << " cm tall";
+    return out.str();
+}
+
+/// What is wrong with the call is said before the long work.
+void check(const MeasureCommand& command) {
+    (void)render::views_from_names(command.drawing.views);
+    for (const fs::path& file : {command.picture, command.sheet})
+        if (!file.empty() && file.extension() != ".png" && file.extension() != ".jpg")
+            throw UsageError("measure: a picture is written as .png or .jpg, not '" +
+                             file.string() + "'");
 }
 
 void measure(const MeasureCommand& command, const GlobalOptions& global) {
@@ -63,19 +84,25 @@ void measure(const MeasureCommand& command, const GlobalOptions& global) {
             out.push_back(&definition);
         return out;
     };
-    const auto wanted = definitions(command.names); // a wrong name is told before the long work
+    check(command);
+    const auto wanted = definitions(command.names);
     const body::BodyModel model = body_of(command, global);
     const body::Measurer measurer(model);
     const body::Figure figure = measurer.figure(model.rest.positions, model.skeleton);
     const auto measured = body::lay_tapes(figure, wanted);
     if (!command.picture.empty()) {
+        TapePictureOptions drawing = command.drawing;
+        drawing.title = title_of(command, model);
         const auto drawn =
             command.names.empty() ? body::lay_tapes(figure, definitions(kDrawn)) : measured;
-        imaging::save_image(draw_tapes(model, drawn, command.drawing), command.picture);
+        imaging::save_image(draw_tapes(model, drawn, drawing), command.picture);
     }
+    if (!command.sheet.empty())
+        imaging::save_image(draw_tape_sheet(model, measured), command.sheet);
     if (!command.json) {
         print_table(measured);
-        if (!command.picture.empty()) std::cout << "wrote " << command.picture.string() << "\n";
+        for (const fs::path& file : {command.picture, command.sheet})
+            if (!file.empty()) std::cout << "wrote " << file.string() << "\n";
         return;
     }
     nlohmann::ordered_json json;
@@ -96,9 +123,14 @@ void add_measure_commands(CLI::App& app, const GlobalOptions& global) {
                      "A body.json, an avatar, or a scan (a mesh or cloud, in any unit)")
         ->required();
     command->add_flag("--json", options->json, "Machine-readable, metres");
-    command->add_option("--measurement", options->names, "Only these; docs/measurements.md lists them")
+    command
+        ->add_option("--measurement", options->names, "Only these; docs/measurements.md lists them")
         ->type_name("NAME");
     command->add_option("--picture", options->picture, "Draws the tapes on the body")
+        ->type_name("FILE");
+    command
+        ->add_option("--sheet", options->sheet,
+                     "Draws each measurement by itself, small, with its name")
         ->type_name("FILE");
     command->add_option("--views", options->drawing.views, "Views in the picture")
         ->capture_default_str();

@@ -149,8 +149,8 @@ void add_mirror_commands(CLI::App& app, const GlobalOptions& global) {
         ->required();
     command->add_option("--size", options->size, "Size of the garments; auto: by the size chart")
         ->capture_default_str();
-    command->add_option("--body", options->body, "Avatar that the person is shown as")
-        ->type_name("AVATAR")
+    command->add_option("--body", options->body, "Body that the person is shown as")
+        ->type_name("AVATAR|body.json")
         ->capture_default_str();
     command->add_flag("--headless", options->headless, "Writes pictures, opens no window");
     command->add_option("--out", options->out, "Folder for the pictures, the film and the track")

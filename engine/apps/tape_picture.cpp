@@ -1,104 +1,164 @@
 #include "apps/tape_picture.h"
 
 #include "apps/contact_sheet.h"
-#include "apps/label.h"
-#include "core/error.h"
-#include "render/import.h"
-#include "render/views.h"
+#include "apps/tape_scene.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
-#include <numbers>
+#include <optional>
 
 namespace toile::apps {
 namespace {
 
-constexpr float kRadius = 0.003f; // metres: half a tape's thickness as drawn
-constexpr int kSides = 8;
-constexpr float kOff = 0.001f; // metres off the skin, so that it is not half drowned
+constexpr float kRadius = 0.005f; // metres: half a tape's thickness as drawn
+constexpr float kBadge = 10.0f;   // pixels: a number's disc
 
-// sRGB colours that stand apart from skin and from each other.
-constexpr std::array<std::array<std::uint8_t, 3>, 12> kColors{{{{200, 30, 40}},
-                                                               {{20, 90, 180}},
-                                                               {{20, 130, 60}},
-                                                               {{230, 130, 0}},
-                                                               {{120, 50, 150}},
-                                                               {{0, 150, 160}},
-                                                               {{180, 60, 120}},
-                                                               {{110, 80, 30}},
-                                                               {{60, 60, 60}},
-                                                               {{150, 150, 0}},
-                                                               {{90, 110, 220}},
-                                                               {{230, 80, 80}}}};
+// Colours that stand apart from skin and from each other.
+constexpr std::array<Color, 12> kColors{{{{200, 30, 40}},
+                                         {{20, 90, 180}},
+                                         {{20, 130, 60}},
+                                         {{225, 115, 0}},
+                                         {{120, 50, 150}},
+                                         {{0, 140, 150}},
+                                         {{190, 50, 120}},
+                                         {{110, 80, 30}},
+                                         {{60, 60, 60}},
+                                         {{125, 125, 0}},
+                                         {{80, 100, 220}},
+                                         {{150, 60, 40}}}};
 
-std::array<std::uint8_t, 3> color_of(std::size_t i) {
+const Color& color_of(std::size_t i) {
     return kColors[i % kColors.size()];
 }
 
-float linear(std::uint8_t srgb) {
-    return std::pow(static_cast<float>(srgb) / 255.0f, 2.2f);
+/// "under_bust_girth" -> "Under bust girth".
+std::string in_words(std::string_view name) {
+    std::string out(name);
+    std::replace(out.begin(), out.end(), '_', ' ');
+    out[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(out[0])));
+    return out;
 }
 
-/// A round cord along a curve.
-geometry::TriangleMesh cord(const geometry::Loop& loop) {
-    geometry::TriangleMesh out;
-    const auto n = loop.points.size();
-    if (n < 2) return out;
-    Vec3f side = (loop.points[1] - loop.points[0]).unitOrthogonal();
-    for (std::size_t i = 0; i < n; ++i) {
-        const Vec3f& before = loop.points[i > 0 ? i - 1 : (loop.closed ? n - 1 : 0)];
-        const Vec3f& after = loop.points[i + 1 < n ? i + 1 : (loop.closed ? 0 : n - 1)];
-        const Vec3f along = (after - before).normalized();
-        side = (side - side.dot(along) * along).normalized();
-        const Vec3f other = along.cross(side);
-        for (int k = 0; k < kSides; ++k) {
-            const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(k) / kSides;
-            const Vec3f out_ward = std::cos(angle) * side + std::sin(angle) * other;
-            out.positions.push_back(loop.points[i] + (kRadius + kOff) * out_ward);
-            out.normals.push_back(out_ward);
+std::string centimetres(double metres) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.1f cm", 100.0 * metres);
+    return text.data();
+}
+
+/// Where a tape's number belongs in a view: outside of the visible end that lies farthest to the
+/// left; upright tapes carry it in their middle. Nothing where the tape is out of sight.
+std::optional<Vec2f> badge_place(const TapeScene& scene, const body::LaidMeasurement& measurement,
+                                 const render::Camera& camera) {
+    std::vector<Vec2f> visible;
+    for (const geometry::Loop& tape : measurement.reading.tapes)
+        for (const SeenPoint& point : scene.seen(tape, camera))
+            if (point.visible) visible.push_back(point.pixel);
+    if (visible.size() < 4) return std::nullopt;
+    const auto leftmost =
+        std::min_element(visible.begin(), visible.end(),
+                         [](const Vec2f& a, const Vec2f& b) { return a.x() < b.x(); });
+    const auto [low, high] =
+        std::minmax_element(visible.begin(), visible.end(),
+                            [](const Vec2f& a, const Vec2f& b) { return a.y() < b.y(); });
+    const auto [least, most] =
+        std::minmax_element(visible.begin(), visible.end(),
+                            [](const Vec2f& a, const Vec2f& b) { return a.x() < b.x(); });
+    const bool upright = high->y() - low->y() > 2.0f * (most->x() - least->x());
+    return upright ? visible[visible.size() / 2] : Vec2f(leftmost->x() - kBadge, leftmost->y());
+}
+
+void put_badge(imaging::Image& picture, const Vec2f& at, std::size_t number) {
+    disc(picture, at.x(), at.y(), kBadge + 1.5f, {255, 255, 255});
+    disc(picture, at.x(), at.y(), kBadge, color_of(number - 1));
+    LabelStyle style;
+    style.size = 12;
+    style.at = LabelStyle::At::middle;
+    style.color = {255, 255, 255};
+    label(picture, static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())) + 4,
+          std::to_string(number), style);
+}
+
+/// Numbers that would lie on each other move down.
+void spread(std::vector<std::pair<Vec2f, std::size_t>>& badges) {
+    std::sort(badges.begin(), badges.end(),
+              [](const auto& a, const auto& b) { return a.first.y() < b.first.y(); });
+    constexpr float kApart = 2.0f * kBadge + 2.0f;
+    for (std::size_t i = 1; i < badges.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            const Vec2f between = badges[i].first - badges[j].first;
+            if (between.norm() < kApart)
+                badges[i].first.y() =
+                    badges[j].first.y() + std::sqrt(kApart * kApart - between.x() * between.x());
         }
+}
+
+imaging::Image legend(std::span<const body::LaidMeasurement> measurements, const std::string& title,
+                      int height) {
+    constexpr int kWidth = 360, kMargin = 24, kTop = 56;
+    const int most = static_cast<int>(measurements.size()) + 1;
+    const int line = std::clamp((height - kTop) / most, 18, 36);
+    imaging::Image out = blank(kWidth, height);
+    LabelStyle heading;
+    heading.size = 20;
+    label(out, kMargin, kTop - 16, title, heading);
+    LabelStyle value;
+    value.at = LabelStyle::At::end;
+    int y = kTop + line;
+    for (std::size_t i = 0; i < measurements.size() && y < height; ++i, y += line) {
+        put_badge(out, {static_cast<float>(kMargin) + kBadge, static_cast<float>(y - 5)}, i + 1);
+        label(out, kMargin + 32, y, in_words(measurements[i].definition->name));
+        label(out, kWidth - kMargin, y, centimetres(measurements[i].reading.value_m), value);
     }
-    const std::size_t rings = loop.closed ? n : n - 1;
-    for (std::size_t i = 0; i < rings; ++i)
-        for (int k = 0; k < kSides; ++k) {
-            const auto at = [&](std::size_t ring, int s) {
-                return static_cast<std::uint32_t>(ring % n * kSides +
-                                                  static_cast<std::size_t>(s % kSides));
-            };
-            out.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i + 1, k)});
-            out.triangles.push_back({at(i, k), at(i, k + 1), at(i + 1, k + 1)});
-        }
     return out;
 }
 
-render::Instance add(render::Renderer& renderer, const geometry::TriangleMesh& mesh,
-                     const render::Material& material) {
-    render::MeshDescription description;
-    description.triangles = mesh.triangles;
-    description.positions = mesh.positions;
-    description.normals = mesh.normals;
-    render::Instance out;
-    out.mesh = renderer.add_mesh(description);
-    out.material = renderer.add_material(material);
-    return out;
-}
-
-imaging::Image legend(std::span<const body::LaidMeasurement> measurements, int height) {
-    constexpr int kLine = 26, kWidth = 380, kTop = 40;
-    imaging::Image out;
-    out.width = kWidth;
+render::RendererOptions renderer_options(int width, int height) {
+    render::RendererOptions out;
+    out.width = width;
     out.height = height;
-    out.pixels.assign(static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(height) * 4, 255);
-    int y = kTop;
-    for (std::size_t i = 0; i < measurements.size() && y + kLine < height; ++i, y += kLine) {
-        fill(out, 16, y - 12, 16, 14, color_of(i));
-        char value[32];
-        std::snprintf(value, sizeof(value), "%6.1f cm", 100.0 * measurements[i].reading.value_m);
-        label(out, 42, y, std::string(measurements[i].definition->name));
-        label(out, kWidth - 96, y, value);
+    out.quality = render::Quality::high;
+    return out;
+}
+
+/// From where most of the tapes can be seen, the front preferred.
+render::View best_view(const TapeScene& scene, std::span<const geometry::Loop> tapes,
+                       const render::Box& box, const TapeSheetOptions& options) {
+    constexpr double kFront = 1.3, kHidden = 0.3;
+    render::View best;
+    double most = -1.0;
+    for (const char* name : {"front", "back", "right", "three_quarter", "left"}) {
+        const render::View view = render::view_from_name(name);
+        const render::Camera camera =
+            render::frame_view(view, box.low, box.high, options.width, options.height);
+        double length = 0.0;
+        for (const geometry::Loop& tape : tapes) {
+            const auto points = scene.seen(tape, camera);
+            for (std::size_t i = 1; i < points.size(); ++i)
+                length += static_cast<double>((points[i].pixel - points[i - 1].pixel).norm()) *
+                          (points[i].visible ? 1.0 : kHidden);
+        }
+        if (best.name.empty()) length *= kFront;
+        if (length <= most) continue;
+        most = length;
+        best = view;
     }
+    return best;
+}
+
+/// Near enough to see the tapes, far enough to see where on the body they are.
+render::Box box_round(std::span<const geometry::Loop> tapes) {
+    constexpr float kAround = 0.12f, kLeast = 0.27f; // metres, half widths
+    render::Box tight;
+    for (const geometry::Loop& tape : tapes)
+        for (const Vec3f& p : tape.points)
+            tight.add(p);
+    const Vec3f middle = 0.5f * (tight.low + tight.high);
+    const Vec3f half = (0.5f * (tight.high - tight.low) + Vec3f::Constant(kAround))
+                           .cwiseMax(Vec3f(kLeast, kLeast, 0.0f));
+    render::Box out;
+    out.low = middle - half;
+    out.high = middle + half;
     return out;
 }
 
@@ -107,36 +167,54 @@ imaging::Image legend(std::span<const body::LaidMeasurement> measurements, int h
 imaging::Image draw_tapes(const body::BodyModel& model,
                           std::span<const body::LaidMeasurement> measurements,
                           const TapePictureOptions& options) {
-    const auto context = render::make_offscreen_context();
-    render::RendererOptions size;
-    size.width = options.width;
-    size.height = options.height;
-    size.quality = render::Quality::high;
-    render::Renderer renderer(*context, size);
-    render::Scene scene;
-    scene.instances.push_back(add(renderer, model.rest, render::mannequin_material()));
-    for (std::size_t i = 0; i < measurements.size(); ++i) {
-        const auto color = color_of(i);
-        render::Material material = render::mannequin_material();
-        material.base_color =
-            Vec4f(linear(color[0]), linear(color[1]), linear(color[2]), 1.0f);
-        for (const geometry::Loop& tape : measurements[i].reading.tapes) {
-            const geometry::TriangleMesh mesh = cord(tape);
-            if (!mesh.triangles.empty()) scene.instances.push_back(add(renderer, mesh, material));
-        }
-    }
-    render::Box box;
-    for (const Vec3f& p : model.rest.positions)
-        box.add(p);
+    TapeScene scene(model, renderer_options(options.width, options.height), true);
+    for (std::size_t i = 0; i < measurements.size(); ++i)
+        scene.lay(measurements[i].reading.tapes, color_of(i), kRadius);
     std::vector<imaging::Image> pictures;
     for (const render::View& view : render::views_from_names(options.views)) {
-        scene.camera = render::frame_view(view, box.low, box.high, size.width, size.height);
-        scene.lighting = render::studio_lighting(scene.camera);
-        renderer.draw(scene);
-        pictures.push_back(renderer.read());
+        const render::Camera camera = render::frame_view(
+            view, scene.bounds().low, scene.bounds().high, options.width, options.height);
+        pictures.push_back(scene.draw(camera));
+        std::vector<std::pair<Vec2f, std::size_t>> badges;
+        for (std::size_t i = 0; i < measurements.size(); ++i)
+            if (const auto place = badge_place(scene, measurements[i], camera))
+                badges.emplace_back(*place, i + 1);
+        spread(badges);
+        for (const auto& [place, number] : badges)
+            put_badge(pictures.back(), place, number);
     }
-    if (options.legend) pictures.push_back(legend(measurements, size.height));
+    pictures.push_back(legend(measurements, options.title, options.height));
     return side_by_side(pictures);
+}
+
+imaging::Image draw_tape_sheet(const body::BodyModel& model,
+                               std::span<const body::LaidMeasurement> measurements,
+                               const TapeSheetOptions& options) {
+    constexpr int kCaption = 26;
+    constexpr Color kTape{200, 30, 40};
+    const int count = static_cast<int>(measurements.size());
+    const int rows = (count + options.columns - 1) / options.columns;
+    const int cell = options.height + kCaption;
+    imaging::Image out = blank(options.columns * options.width, rows * cell);
+    TapeScene scene(model, renderer_options(options.width, options.height), false);
+    LabelStyle caption;
+    caption.size = 11;
+    caption.at = LabelStyle::At::middle;
+    for (int i = 0; i < count; ++i) {
+        const body::LaidMeasurement& m = measurements[static_cast<std::size_t>(i)];
+        const int x = i % options.columns * options.width, y = i / options.columns * cell;
+        label(out, x + options.width / 2, y + cell - 8, std::string(m.definition->name), caption);
+        if (m.reading.tapes.empty()) continue;
+        const render::Box box = box_round(m.reading.tapes);
+        const render::View view = best_view(scene, m.reading.tapes, box, options);
+        scene.lay(m.reading.tapes, kTape, 0.008f * (box.high.y() - box.low.y()));
+        paste(
+            out,
+            scene.draw(render::frame_view(view, box.low, box.high, options.width, options.height)),
+            x, y);
+        scene.take_off();
+    }
+    return out;
 }
 
 } // namespace toile::apps

@@ -11,14 +11,26 @@
 namespace toile::apps {
 
 struct TapePictureOptions {
-    std::string views = "front,left"; ///< as `toile tryon --views`
-    int width = 480, height = 720;    ///< of each view, pixels
-    bool legend = true;
+    std::string views = "front,back"; ///< as `toile tryon --views`
+    int width = 560, height = 800;    ///< of each view, pixels
+    std::string title;                ///< stands above the values
 };
 
-/// `model` at rest; tapes in the same frame. \throw Error
-[[nodiscard]] imaging::Image
-draw_tapes(const body::BodyModel& model, std::span<const body::LaidMeasurement> measurements,
-           const TapePictureOptions& options = {});
+/// `model` at rest; tapes in the same frame. Each measurement has a colour and a number, which
+/// stand on its tape and beside its value. \throw Error
+[[nodiscard]] imaging::Image draw_tapes(const body::BodyModel& model,
+                                        std::span<const body::LaidMeasurement> measurements,
+                                        const TapePictureOptions& options = {});
+
+struct TapeSheetOptions {
+    int columns = 5;
+    int width = 220, height = 240; ///< of each picture, pixels
+};
+
+/// A small picture of each measurement by itself, near and from where most of it is seen, with its
+/// name. \throw Error
+[[nodiscard]] imaging::Image draw_tape_sheet(const body::BodyModel& model,
+                                             std::span<const body::LaidMeasurement> measurements,
+                                             const TapeSheetOptions& options = {});
 
 } // namespace toile::apps

@@ -150,8 +150,8 @@ void try_on(const TryOnOptions& options, const GlobalOptions& global) {
 void add_tryon_commands(CLI::App& app, const GlobalOptions& global) {
     CLI::App* command = app.add_subcommand("tryon", "Dresses an avatar and draws it");
     auto options = std::make_shared<TryOnOptions>();
-    command->add_option("--body", options->body, "Avatar to dress")
-        ->type_name("AVATAR")
+    command->add_option("--body", options->body, "Body to dress")
+        ->type_name("AVATAR|body.json")
         ->capture_default_str();
     command->add_option("--garment", options->garments, "Garments, by id, folder or zip")
         ->type_name("ID[,ID...]")

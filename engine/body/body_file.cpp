@@ -14,14 +14,20 @@ namespace {
 constexpr std::int64_t kSchema = 1;
 constexpr std::size_t kMostBytes = 8u << 20;
 constexpr double kDetailStep = 1e-5; // metres: what a file keeps of the detail
-constexpr std::int64_t kMostDetail = 20000;
+constexpr double kMostDetail = 20000.0;
 constexpr std::size_t kMostCoefficients = 1000;
+constexpr double kMostDeviations = 100.0; // of a coefficient; nobody is beyond 10
+constexpr double kFarthest = 1000.0;      // metres: where the hips may be
 
 std::vector<double> coefficients_of(JsonObject& object) {
     const nlohmann::json& list = object.any("coefficients");
     if (!list.is_array() || list.size() > kMostCoefficients)
         throw object.error("coefficients", "must be a list of at most 1000 numbers");
-    return object.numbers("coefficients", list.size());
+    auto out = object.numbers("coefficients", list.size());
+    for (const double value : out)
+        if (std::abs(value) > kMostDeviations)
+            throw object.error("coefficients", "has a value beyond 100 deviations");
+    return out;
 }
 
 std::vector<float> detail_in(JsonObject& object) {
@@ -29,9 +35,10 @@ std::vector<float> detail_in(JsonObject& object) {
     if (!list.is_array()) throw object.error("detail", "must be a list of whole numbers");
     std::vector<float> out;
     for (const auto& value : list) {
-        if (!value.is_number_integer() || std::abs(value.get<std::int64_t>()) > kMostDetail)
+        const double steps = value.is_number_integer() ? value.get<double>() : kMostDetail + 1.0;
+        if (std::abs(steps) > kMostDetail)
             throw object.error("detail", "must hold whole numbers within +-20000 (0.01 mm each)");
-        out.push_back(static_cast<float>(kDetailStep * value.get<double>()));
+        out.push_back(static_cast<float>(kDetailStep * steps));
     }
     return out;
 }
@@ -39,6 +46,8 @@ std::vector<float> detail_in(JsonObject& object) {
 Pose pose_in(JsonObject pose) {
     Pose out;
     const auto place = pose.numbers("hips_position", 3);
+    for (const double metres : place)
+        if (std::abs(metres) > kFarthest) throw pose.error("hips_position", "is over 1000 m away");
     out.hips_position = Vec3d(place[0], place[1], place[2]).cast<float>();
     JsonObject rotations = pose.object("rotations");
     for (const auto& name : rotations.keys()) {
@@ -62,13 +71,36 @@ nlohmann::ordered_json pose_out(const Pose& pose) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
         const Quatf& q = pose.rotations[j];
         out["rotations"][std::string(joint_name(static_cast<Joint>(j)))] = {q.x(), q.y(), q.z(),
-                                                                             q.w()};
+                                                                            q.w()};
     }
     return out;
 }
 
-std::string major(const std::string& version) {
-    return version.substr(0, version.find('.'));
+void check_version(const BodyFile& body, const BodyModel& model) {
+    const auto major = [](const std::string& version) {
+        return version.substr(0, version.find('.'));
+    };
+    if (major(model.version) != major(body.model_version))
+        throw Error("the body was made with version " + body.model_version + " of '" + body.model +
+                    "'; here is " + model.version + ", whose coefficients mean other bodies");
+}
+
+/// Moves a surface (nv) by its detail, and stands it on the floor again; no detail: nothing.
+void shift_along_normals(std::span<const float> detail, std::span<const Vec3f> normals,
+                         std::span<Vec3f> positions, Skeleton& skeleton) {
+    if (detail.empty()) return;
+    if (detail.size() != positions.size())
+        throw Error("the body's detail is for " + std::to_string(detail.size()) +
+                    " vertices; its model has " + std::to_string(positions.size()));
+    float floor = std::numeric_limits<float>::max();
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        positions[v] += detail[v] * normals[v];
+        floor = std::min(floor, positions[v].y());
+    }
+    for (Vec3f& p : positions)
+        p.y() -= floor;
+    for (Vec3f& p : skeleton.rest_positions)
+        p.y() -= floor;
 }
 
 } // namespace
@@ -120,11 +152,11 @@ void save_body_file(const BodyFile& body, const std::filesystem::path& file) {
     json["coefficients"] = body.coefficients;
     if (body.pose) json["pose"] = pose_out(*body.pose);
     for (const auto& [name, length] : body.measurements)
-        json["measurements"][name] = {{"value", length.value_m},
-                                      {"confidence", length.confidence}};
+        json["measurements"][name] = {{"value", length.value_m}, {"confidence", length.confidence}};
     if (!body.fit.is_null()) json["fit"] = body.fit;
     if (!body.detail.empty()) {
         std::vector<std::int64_t> steps;
+        steps.reserve(body.detail.size());
         for (const float d : body.detail)
             steps.push_back(std::llround(static_cast<double>(d) / kDetailStep));
         json["detail"] = steps;
@@ -140,36 +172,43 @@ void save_body_file(const BodyFile& body, const std::filesystem::path& file) {
 
 BodyShape shape_of(const BodyFile& body, const BodySpace& space) {
     BodyShape out = space.shape(body.coefficients);
-    if (body.detail.empty()) return out;
-    const auto& normals = space.model().rest.normals;
-    if (body.detail.size() != out.positions.size())
-        throw Error("a body's detail of " + std::to_string(body.detail.size()) +
-                    " vertices does not fit '" + space.model().id + "', which has " +
-                    std::to_string(out.positions.size()));
-    float floor = std::numeric_limits<float>::max();
-    for (std::size_t v = 0; v < out.positions.size(); ++v) {
-        out.positions[v] += body.detail[v] * normals[v];
-        floor = std::min(floor, out.positions[v].y());
-    }
-    for (Vec3f& p : out.positions)
-        p.y() -= floor;
-    for (Vec3f& p : out.skeleton.rest_positions)
-        p.y() -= floor;
+    shift_along_normals(body.detail, space.model().rest.normals, out.positions, out.skeleton);
     return out;
 }
 
 BodyModel model_of(const BodyFile& body) {
-    const BodySpace space = BodySpace::load(find_avatar(body.model));
-    if (major(space.model().version) != major(body.model_version))
-        throw Error("the body was made with version " + body.model_version + " of '" + body.model +
-                    "'; here is " + space.model().version + ", whose coefficients mean other bodies");
-    BodyModel out = space.body(body.coefficients);
-    BodyShape shape = shape_of(body, space);
-    out.rest.positions = std::move(shape.positions);
+    const std::filesystem::path folder = find_avatar(body.model);
+    const bool has_space = std::filesystem::exists(folder / "space.json");
+    BodyModel out;
+    if (has_space) {
+        const BodySpace space = BodySpace::load(folder);
+        check_version(body, space.model());
+        BodyShape shape = shape_of(body, space);
+        out = space.body(body.coefficients);
+        out.rest.positions = std::move(shape.positions);
+        out.skeleton = shape.skeleton;
+    } else {
+        out = load_body_model(folder);
+        check_version(body, out);
+        if (!body.coefficients.empty())
+            throw Error("the body has " + std::to_string(body.coefficients.size()) +
+                        " shape coefficients; '" + body.model + "' is one body and takes none");
+        shift_along_normals(body.detail, out.rest.normals, out.rest.positions, out.skeleton);
+    }
     geometry::vertex_normals(out.rest.positions, out.rest.triangles, out.rest.normals);
-    out.skeleton = shape.skeleton;
     out.measurements = as_map(Measurer(out).measure(out.rest.positions, out.skeleton));
     return out;
+}
+
+BodyModel load_body(const std::filesystem::path& file) {
+    const BodyFile body = load_body_file(file);
+    try {
+        return model_of(body);
+    } catch (const JsonError&) {
+        throw; // of the model's own files
+    } catch (const Error& e) {
+        throw FileError(file.string(), e.what());
+    }
 }
 
 std::vector<float> detail_of(const BodySpace& space, std::span<const double> coefficients,

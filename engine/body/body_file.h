@@ -18,14 +18,14 @@ struct BodyFile {
         double confidence = 0.0; ///< [0, 1]
     };
 
-    std::string model; ///< id of an avatar with shape components
+    std::string model; ///< id of an avatar, with or without shape components
     std::string model_version;
     std::string made_by;              ///< "measurements", "fit"
     std::optional<Sex> sex;           ///< whose population it is from
     std::vector<double> coefficients; ///< at most as many as the model has components
     /// (nv) what the components cannot show: metres along the mean body's normals; or empty.
     std::vector<float> detail;
-    std::optional<Pose> pose; ///< as it was seen; world
+    std::optional<Pose> pose;                   ///< as it was seen; world
     std::map<std::string, Length> measurements; ///< ISO name -> metres
     nlohmann::ordered_json fit;                 ///< how a fit went, or null
 };
@@ -40,9 +40,11 @@ void save_body_file(const BodyFile& body, const std::filesystem::path& file);
 /// Its surface and joints at rest. \throw Error when it does not fit the space
 [[nodiscard]] BodyShape shape_of(const BodyFile& body, const BodySpace& space);
 
-/// The same as a body of its own, measured. \throw Error when its model is not at hand, or of
-/// another major version
+/// The same as a body of its own, measured. An avatar without components takes no coefficients.
+/// \throw Error when its model is not at hand, or of another major version
 [[nodiscard]] BodyModel model_of(const BodyFile& body);
+/// Reads a file and makes the body of it. \throw Error naming the file
+[[nodiscard]] BodyModel load_body(const std::filesystem::path& file);
 
 /// `detail` of a surface at rest that differs from the coefficients' shape; both stand on the
 /// floor. (nv)

@@ -33,7 +33,7 @@ TEST(CommandLine, HelpAndVersionSucceed) {
 }
 
 TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
-    for (const char* command : {"mirror", "tryon", "compare", "view"}) {
+    for (const char* command : {"mirror", "tryon", "compare", "view", "measure", "fit"}) {
         const ProgramResult help = run_toile({command, "--help"});
         EXPECT_EQ(help.status, 0) << command;
         EXPECT_THAT(help.output, HasSubstr("Example: toile")) << command;

@@ -3,6 +3,7 @@
 #include "assets/bvh.h"
 #include "assets/files.h"
 #include "assets/zip.h"
+#include "body/body_file.h"
 #include "core/bytes.h"
 #include "core/log.h"
 #include "core/random.h"
@@ -157,6 +158,23 @@ TEST(Pictures, SurviveDamage) {
     imaging::save_depth({8, 8, std::vector<float>(64, 1.25f)}, folder / "d.png");
     EXPECT_GT(torture(folder / "d.png", [&] { (void)imaging::load_depth(folder / "d.png"); }),
               kRounds / 4);
+}
+
+TEST(BodyFiles, SurviveDamage) {
+    const test::TemporaryFolder folder;
+    const auto file = folder / "body.json";
+    body::BodyFile person;
+    person.model = "adult";
+    person.model_version = "1.0.0";
+    person.made_by = "fit";
+    person.sex = body::Sex::male;
+    person.coefficients = {0.5, -1.25};
+    person.detail = {0.001f, -0.002f, 0.0f};
+    person.pose.emplace();
+    person.measurements["bust_girth"] = {0.92, 0.8};
+    person.fit["frames"] = 5;
+    save_body_file(person, file);
+    EXPECT_GT(torture(file, [&] { (void)body::load_body_file(file); }), kRounds / 2);
 }
 
 TEST(CaptureFolders, SurviveDamage) {

@@ -1,0 +1,111 @@
+// toile measure as a user calls it: the table, the JSON, the pictures, and what it refuses.
+#include "imaging/image.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace toile::test {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Measure, ATableNamesEveryMeasurementOfAnAvatar) {
+    const ProgramResult result = run_toile({"measure", "woman"});
+    ASSERT_EQ(result.status, 0) << result.output;
+    EXPECT_GE(std::count(result.output.begin(), result.output.end(), '\n'), 70);
+    EXPECT_THAT(result.output,
+                testing::ContainsRegex("bust_girth +[0-9]+\\.[0-9] cm  confidence [01]\\.[0-9]+"));
+}
+
+TEST(Measure, OnlyWhatIsAskedForAsJson) {
+    const ProgramResult result = run_toile({"measure", "man", "--json", "--measurement",
+                                            "waist_girth", "--measurement", "inside_leg_length"});
+    ASSERT_EQ(result.status, 0) << result.output;
+    const auto json = nlohmann::json::parse(result.output);
+    ASSERT_EQ(json.at("measurements").size(), 2u);
+    const double waist = json.at("measurements").at("waist_girth").at("value");
+    EXPECT_TRUE(waist > 0.6 && waist < 1.1) << waist;
+    EXPECT_GT(json.at("measurements").at("inside_leg_length").at("confidence"), 0.5);
+}
+
+TEST(Measure, ABodyFileMeasuresTheSameHoweverItStood) {
+    const TemporaryFolder folder;
+    const auto file = folder / "anna.json";
+    ASSERT_EQ(run_toile({"avatar", "new", "--sex", "female", "--stature", "1.68", "--bust_girth",
+                         "0.92", "--out", file.string()})
+                  .status,
+              0);
+    const auto measured = [&] {
+        const ProgramResult result = run_toile({"measure", file.string(), "--json"});
+        EXPECT_EQ(result.status, 0) << result.output;
+        return nlohmann::json::parse(result.output).at("measurements");
+    };
+    const auto rest = measured();
+    EXPECT_NEAR(rest.at("stature").at("value").get<double>(), 1.68, 0.002);
+    EXPECT_NEAR(rest.at("bust_girth").at("value").get<double>(), 0.92, 0.002);
+    auto json = nlohmann::json::parse(std::ifstream(file));
+    json["pose"] = {{"hips_position", {1.0, 0.9, -2.0}},
+                    {"rotations", {{"leftUpperArm", {0.0, 0.0, 0.6, 0.8}}}}};
+    std::ofstream(file) << json.dump();
+    const auto posed = measured();
+    for (const auto& [name, row] : rest.items())
+        EXPECT_NEAR(posed.at(name).at("value").get<double>(), row.at("value").get<double>(), 0.002)
+            << name;
+}
+
+TEST(Measure, DrawsTheTapesAndTheirValues) {
+    const TemporaryFolder folder;
+    const auto picture = folder / "woman.png", sheet = folder / "sheet.png";
+    const ProgramResult result = run_toile(
+        {"measure", "woman", "--picture", picture.string(), "--views", "front", "--measurement",
+         "waist_girth", "--measurement", "hip_girth", "--sheet", sheet.string()});
+    ASSERT_EQ(result.status, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr(picture.string()));
+    const auto reddest = [](const imaging::Image& image) {
+        int most = 0;
+        for (std::size_t at = 0; at < image.pixels.size(); at += 4)
+            most = std::max(most, image.pixels[at] - image.pixels[at + 1]);
+        return most;
+    };
+    const imaging::Image drawn = imaging::load_image(picture);
+    EXPECT_GT(drawn.width, 560); // the view, and the values beside it
+    EXPECT_EQ(drawn.height, 800);
+    EXPECT_GT(reddest(drawn), 80);
+    EXPECT_GT(reddest(imaging::load_image(sheet)), 80);
+}
+
+TEST(Measure, SaysInOneLineWhatIsWrong) {
+    const TemporaryFolder folder;
+    const auto expect = [](std::vector<std::string> words, int status, const std::string& text) {
+        words.insert(words.begin(), "measure");
+        const ProgramResult result = run_toile(words);
+        EXPECT_EQ(result.status, status) << result.output;
+        EXPECT_THAT(result.output, HasSubstr(text));
+        if (status == 1) {
+            EXPECT_EQ(std::count(result.output.begin(), result.output.end(), '\n'), 1)
+                << result.output;
+        }
+    };
+    expect({}, 2, "body");
+    expect({"giant"}, 1, "no avatar 'giant'");
+    expect({"woman", "--measurement", "waist_grith"}, 1, "did you mean 'waist_girth'");
+    expect({"woman", "--picture", "a.gif"}, 2, "a.gif");
+    expect({"woman", "--picture", "a.png", "--views", "inside"}, 2, "inside");
+    expect({(folder / "none.json").string()}, 1, "none.json: no such file");
+    const auto bad = folder / "bad.json";
+    std::ofstream(bad) << R"({"schema": 1, "model": "adult", "model_version": "0.1.0",)"
+                       << R"( "made_by": "measurements", "coefficients": []})";
+    expect({bad.string()}, 1, "bad.json: the body was made with version 0.1.0");
+    std::ofstream(bad) << R"({"schema": 1, "shoes": 42})";
+    expect({bad.string()}, 1, "bad.json: ");
+}
+
+} // namespace
+} // namespace toile::test
