@@ -72,15 +72,15 @@ void add_fit_commands(CLI::App& app, const GlobalOptions& global) {
         app.add_subcommand("fit", "Finds one person's body in a scan or in depth pictures");
     const auto options = std::make_shared<FitCommand>();
     add_fit_input(*command, options->input);
-    command->add_option("--out", options->out, "Gets the body")
-        ->type_name("body.json")
-        ->required();
-    command->add_option("--mesh", options->mesh,
-                        "Gets the surface as it was seen: .ply, .obj or .glb; of several frames "
-                        "one file each")
+    command->add_option("--out", options->out, "Gets the body")->type_name("body.json")->required();
+    command
+        ->add_option("--mesh", options->mesh,
+                     "Gets the surface as it was seen: .ply, .obj or .glb; of several frames "
+                     "one file each")
         ->type_name("FILE");
-    command->footer("Example: toile fit --scan anna.ply --out anna.json --mesh anna-fitted.ply\n"
-                    "         toile fit --source capture:front --source capture:back --out anna.json");
+    command->footer(
+        "Example: toile fit --scan anna.ply --out anna.json --mesh anna-fitted.ply\n"
+        "         toile fit --source capture:front --source capture:back --out anna.json");
     command->callback([options, &global] { fit(*options, global); });
 }
 

@@ -31,8 +31,8 @@ geometry::TriangleMesh load_scan(const std::filesystem::path& file) {
     geometry::TriangleMesh out;
     std::vector<Eigen::Affine3f> places;
     for (const assets::Node& node : scene.nodes) {
-        Eigen::Affine3f place = Eigen::Translation3f(node.translation) * node.rotation *
-                                Eigen::Scaling(node.scale);
+        Eigen::Affine3f place =
+            Eigen::Translation3f(node.translation) * node.rotation * Eigen::Scaling(node.scale);
         if (node.parent != assets::kNone)
             place = places[static_cast<std::size_t>(node.parent)] * place;
         places.push_back(place);
@@ -43,7 +43,8 @@ geometry::TriangleMesh load_scan(const std::filesystem::path& file) {
                 out.positions.push_back(place * p);
             for (const Triangle& t : primitive.triangles)
                 out.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-            if (out.normals.size() == base && primitive.normals.size() == primitive.positions.size())
+            if (out.normals.size() == base &&
+                primitive.normals.size() == primitive.positions.size())
                 for (const Vec3f& n : primitive.normals)
                     out.normals.push_back((place.linear() * n).normalized());
         }
@@ -99,7 +100,8 @@ void read_pictures(const std::string& uri, host::Registry& registry, host::Servi
 } // namespace
 
 void add_fit_input(CLI::App& command, FitInput& input) {
-    command.add_option("--scan", input.scan, "A mesh or a point cloud; unit and way up are guessed")
+    command
+        .add_option("--scan", input.scan, "A mesh or a point cloud; unit and way up are guessed")
         ->type_name("FILE");
     command
         .add_option("--source", input.sources,

@@ -12,10 +12,10 @@
 namespace toile::apps {
 
 struct FitInput {
-    std::filesystem::path scan;        ///< a mesh or a cloud, or:
-    std::vector<std::string> sources;  ///< URIs of cameras
-    std::uint32_t frames = 0;          ///< how many are used, spread over the recording; 0: one
-    std::string sex;                   ///< "female", "male" or empty
+    std::filesystem::path scan;       ///< a mesh or a cloud, or:
+    std::vector<std::string> sources; ///< URIs of cameras
+    std::uint32_t frames = 0;         ///< how many are used, spread over the recording; 0: one
+    std::string sex;                  ///< "female", "male" or empty
     bool dressed = false;
 };
 

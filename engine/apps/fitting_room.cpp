@@ -82,8 +82,8 @@ std::shared_ptr<const pipeline::BoundaryBody> FittingRoom::load_body(const std::
     return keep(folder, body::load_body_model(folder));
 }
 
-std::shared_ptr<const pipeline::BoundaryBody>
-FittingRoom::keep(const std::filesystem::path& from, body::BodyModel model) {
+std::shared_ptr<const pipeline::BoundaryBody> FittingRoom::keep(const std::filesystem::path& from,
+                                                                body::BodyModel model) {
     bodies_.push_back(
         {from, std::make_shared<const pipeline::BoundaryBody>(
                    std::make_shared<const body::BodyModel>(std::move(model)), next_revision_++)});

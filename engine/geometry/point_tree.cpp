@@ -8,9 +8,8 @@
 namespace toile::geometry {
 
 struct PointTree::Tree {
-    using Index =
-        nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Tree>, Tree, 3,
-                                            std::uint32_t>;
+    using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Tree>,
+                                                      Tree, 3, std::uint32_t>;
 
     explicit Tree(std::span<const Vec3f> given) : points(given.begin(), given.end()) {
         if (points.empty()) throw Error("a search among no points");

@@ -35,10 +35,8 @@ constexpr std::array kKinds{
     table(TOILE_CLOTH, kCloth),     table(TOILE_TOOL, kTool),
 };
 constexpr std::array kExtensions{
-    table(TOILE_PARAMETERS, kParameters),
-    table(TOILE_STATE, kState),
-    table(TOILE_DEBUG_DRAW, kDebugDraw),
-    table(TOILE_TRUTH, kTruth),
+    table(TOILE_PARAMETERS, kParameters), table(TOILE_STATE, kState),
+    table(TOILE_DEBUG_DRAW, kDebugDraw),  table(TOILE_TRUTH, kTruth),
     table(TOILE_BODY_FIT, kBodyFit),
 };
 constexpr std::array kHostExtensions{TOILE_THREAD_POOL};

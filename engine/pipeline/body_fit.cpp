@@ -41,9 +41,8 @@ void copy_body(const toile_body& body, FittedBody& out) {
     std::copy(joints.begin(), joints.end(), out.skeleton.rest_positions.begin());
     const auto* bytes = static_cast<const char*>(body.measurements.data);
     for (std::uint32_t i = 0; i < body.measurements.count && bytes != nullptr; ++i) {
-        const auto& m =
-            *reinterpret_cast<const toile_measurement*>(bytes + std::size_t{i} *
-                                                                    body.measurements.stride);
+        const auto& m = *reinterpret_cast<const toile_measurement*>(
+            bytes + std::size_t{i} * body.measurements.stride);
         if (m.name != nullptr && std::isfinite(m.value))
             out.measurements[m.name] = {m.value, m.confidence};
     }
@@ -83,7 +82,8 @@ BodyFit::BodyFit(host::Registry& registry, host::Services& services, const toile
         break;
     }
     if (!instance_)
-        throw Error("no plugin that fits bodies was found; `toile plugin list` shows what there is");
+        throw Error(
+            "no plugin that fits bodies was found; `toile plugin list` shows what there is");
     source_ = &instance_->table<toile_body_source>();
     instance_->activate(limits);
 }
@@ -141,8 +141,7 @@ FittedBody BodyFit::fit(const FitRequest& request, host::Job& job) {
     auto options = host::sized<toile_body_fit_options>();
     options.dressed = request.dressed ? 1 : 0;
     if (request.sex)
-        options.sex =
-            *request.sex == body::Sex::female ? TOILE_SEX_FEMALE : TOILE_SEX_MALE;
+        options.sex = *request.sex == body::Sex::female ? TOILE_SEX_FEMALE : TOILE_SEX_MALE;
     instance_->call("fit", [&](toile_instance* instance) {
         return fit_->fit(instance, &options, job.handle());
     });

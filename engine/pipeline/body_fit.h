@@ -36,7 +36,7 @@ struct FittedBody {
     body::Skeleton skeleton; ///< at rest
     body::Pose pose;         ///< of the last instant
     std::map<std::string, FittedLength> measurements; ///< by ISO name
-    std::vector<geometry::TriangleMesh> surfaces; ///< of each instant, as it was seen
+    std::vector<geometry::TriangleMesh> surfaces;     ///< of each instant, as it was seen
     nlohmann::ordered_json report;
 };
 

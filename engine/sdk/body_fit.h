@@ -20,7 +20,8 @@ struct BodyFit {
     template <class P>
     static toile_status fit(toile_instance* instance, const toile_body_fit_options* options,
                             toile_job* job) noexcept {
-        return guarded<P>(instance, [&](P& p) { p.fit(read_struct(options, "options"), Job(job)); });
+        return guarded<P>(instance,
+                          [&](P& p) { p.fit(read_struct(options, "options"), Job(job)); });
     }
     template <class P>
     static toile_status surface(toile_instance* instance, std::uint32_t instant,

@@ -9,10 +9,10 @@ namespace {
 
 using geometry::kNoTriangle;
 
-constexpr float kFullCosine = 0.6f;   // from here on a slanting surface counts in full
-constexpr float kFreeSpace = 0.06f;   // metres that a reading must lie behind a vertex
+constexpr float kFullCosine = 0.6f; // from here on a slanting surface counts in full
+constexpr float kFreeSpace = 0.06f; // metres that a reading must lie behind a vertex
 constexpr float kFreePixels = 1.5f; // a silhouette is not known better
-constexpr float kLostReach = 0.05f;   // of points whose ray misses the model, metres
+constexpr float kLostReach = 0.05f; // of points whose ray misses the model, metres
 constexpr float kLostWeight = 0.5f;
 constexpr std::uint32_t kGrain = 2048;
 
@@ -138,8 +138,7 @@ void Associator::pull_from_empty(const ObservedPoints& observed, const Associati
     for (std::uint32_t v = 0; v < level_.vertices.size(); ++v) {
         const Vec3f& x = posed_->positions[v];
         float margin = 0.0f;
-        const Vec3f as_seen =
-            seen.eye ? observed.correction.undo(x, *seen.eye) : x;
+        const Vec3f as_seen = seen.eye ? observed.correction.undo(x, *seen.eye) : x;
         if (seen.view) {
             const auto sight = seen.view->sight(as_seen);
             if (!sight) continue;

@@ -13,14 +13,14 @@
 namespace toile::scape_fit {
 
 struct AssociationOptions {
-    float reach_m = 0.10f;        ///< farther pairs are left out
-    float scale_m = 0.03f;        ///< of the robust weight (Geman-McClure)
-    float least_cosine = 0.35f;   ///< between the normals of a pair, or of normal and line of sight
-    bool along_rays = false;      ///< pairs on the line of sight: unbiased by noise along it
-    float empty_weight = 0.3f;    ///< of model places where the observation has nothing
+    float reach_m = 0.10f;       ///< farther pairs are left out
+    float scale_m = 0.03f;       ///< of the robust weight (Geman-McClure)
+    float least_cosine = 0.35f;  ///< between the normals of a pair, or of normal and line of sight
+    bool along_rays = false;     ///< pairs on the line of sight: unbiased by noise along it
+    float empty_weight = 0.3f;   ///< of model places where the observation has nothing
     float outline_weight = 0.0f; ///< m^2 that a pixel of the outline counts as; 0: not used
-    /// Of places whose points lie outside the model on the whole, on parts that clothes cover: below
-    /// 1 for dressed people.
+    /// Of places whose points lie outside the model on the whole, on parts that clothes cover:
+    /// below 1 for dressed people.
     float outside_weight = 1.0f;
     float cloth_margin_m = 0.0f; ///< and of those only, what lies at least so far outside
 };
@@ -28,8 +28,8 @@ struct AssociationOptions {
 /// One observation as the fit uses it.
 struct ObservedPoints {
     explicit ObservedPoints(const Observation& seen)
-        : observation(seen), tree(seen.points), points(seen.points),
-          outline(seen.outline), eye(seen.eye) {}
+        : observation(seen), tree(seen.points), points(seen.points), outline(seen.outline),
+          eye(seen.eye) {}
 
     /// Moves points, outline and eye to where a camera's correction has them.
     void correct(const CameraCorrection& by);

@@ -12,8 +12,7 @@ namespace toile::scape_fit {
 /// Unit directions (world) from the camera to the person's outline: between a pixel of the person
 /// and one beside it that shows something well behind. Where the camera has no reading there is
 /// none.
-[[nodiscard]] std::vector<Vec3f> outline(const DepthView& view,
-                                         std::span<const std::uint8_t> mask);
+[[nodiscard]] std::vector<Vec3f> outline(const DepthView& view, std::span<const std::uint8_t> mask);
 
 /// The model's own outline as `eye` sees it, paired with directions `edges` (corrected), summed up
 /// at vertices. Pairs farther than `reach_m` are left out; `weight` is the area (m^2) that one

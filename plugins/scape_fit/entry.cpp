@@ -52,8 +52,8 @@ struct BoundaryPerson {
         for (const auto& [name, vertex] : model.landmarks)
             landmarks.push_back({name.c_str(), vertex, 0});
         for (const body::Measurement& m : session.measurements())
-            measurements.push_back({m.name.data(), static_cast<float>(m.value_m),
-                                    static_cast<float>(m.confidence)});
+            measurements.push_back(
+                {m.name.data(), static_cast<float>(m.value_m), static_cast<float>(m.confidence)});
         out.size = sizeof(out);
         out.revision = revision;
         out.model_id = model.id.c_str();
@@ -99,8 +99,7 @@ class ScapeFit {
     void begin(const toile_body_source_setup& setup, sdk::Job job) {
         end();
         try {
-            if (!model_)
-                model_ = std::make_unique<fit::FitModel>(body::find_avatar(kModel));
+            if (!model_) model_ = std::make_unique<fit::FitModel>(body::find_avatar(kModel));
             job.progress(0.5);
             session_ = std::make_unique<fit::FitSession>(*model_);
         } catch (const toile::Error& e) {
@@ -256,8 +255,8 @@ class ScapeFit {
             const auto& size = session.camera(frame.camera).intrinsics;
             image.width = size.width;
             image.height = size.height;
-            if (depth.size() != static_cast<std::size_t>(size.width) *
-                                    static_cast<std::size_t>(size.height))
+            if (depth.size() !=
+                static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height))
                 throw sdk::bad_argument("frame.depth_m: not of the camera's size");
             image.metres.assign(depth.begin(), depth.end());
             sequence_ = frame.sequence;

@@ -131,8 +131,8 @@ void pose_level(const FitModel& model, const FitLevel& level, const FitShape& sh
         const RigidTransform skin =
             body::blend(motions, level.skin.joints[v], level.skin.weights[v]);
         const Vec3f rest =
-            out.rest[v] + level.correctives.weights[v] *
-                              body::pose_features(turns, level.correctives.joints[v]);
+            out.rest[v] +
+            level.correctives.weights[v] * body::pose_features(turns, level.correctives.joints[v]);
         out.positions[v] = skin * rest;
         out.rotations[v] = skin.rotation;
     }
@@ -152,9 +152,8 @@ void pose_level(const FitModel& model, const FitLevel& level, const FitShape& sh
 }
 
 body::BodyShape rest_shape(const FitModel& model, const FitShape& shape) {
-    body::BodyShape out =
-        model.space().shape({shape.coefficients.data(),
-                             static_cast<std::size_t>(shape.coefficients.size())});
+    body::BodyShape out = model.space().shape(
+        {shape.coefficients.data(), static_cast<std::size_t>(shape.coefficients.size())});
     if (shape.offsets.empty()) return out;
     const FitLevel& full = model.level(0);
     float floor = std::numeric_limits<float>::max();
@@ -176,8 +175,7 @@ void motion_row(const FitModel& model, const FitLevel& level, const PosedLevel& 
     Eigen::Map<Eigen::RowVectorXf> shape(row, k);
     const Eigen::RowVector3f rest_normal =
         (posed.rotations[vertex].conjugate() * normal).transpose();
-    shape.noalias() =
-        rest_normal * level.components.middleRows<3>(static_cast<int>(3 * vertex));
+    shape.noalias() = rest_normal * level.components.middleRows<3>(static_cast<int>(3 * vertex));
     for (std::size_t i = 0; i < 4; ++i) {
         const float w = level.skin.weights[vertex][i];
         if (w == 0.0f) continue;

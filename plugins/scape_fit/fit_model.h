@@ -27,7 +27,7 @@ struct FitLevel {
     body::Correctives correctives;       ///< (n)
     /// (n) share of each vertex that moves with a joint or what hangs on it.
     std::vector<std::array<float, body::kJointCount>> below;
-    std::vector<float> areas; ///< (n) of the mean body that belongs to each, m^2
+    std::vector<float> areas;          ///< (n) of the mean body that belongs to each, m^2
     std::vector<std::uint8_t> clothed; ///< (n) 1: not head, hands or feet
     std::vector<float> trust; ///< (n) how far the model can be believed there: hands and face less
 };
@@ -60,12 +60,12 @@ class FitModel {
 /// nothing allocates.
 struct PosedLevel {
     body::Skeleton skeleton;
-    body::JointTransforms world;   ///< world_from_joint
-    std::vector<Vec3f> rest;       ///< (n) of the shape
-    std::vector<Vec3f> positions;  ///< (n) world
-    std::vector<Vec3f> normals;    ///< (n) unit
-    std::vector<Quatf> rotations;  ///< (n) of the skin there
-    ShapeRows joint_moves;         ///< (3 joints x k) world joint places by coefficient
+    body::JointTransforms world;  ///< world_from_joint
+    std::vector<Vec3f> rest;      ///< (n) of the shape
+    std::vector<Vec3f> positions; ///< (n) world
+    std::vector<Vec3f> normals;   ///< (n) unit
+    std::vector<Quatf> rotations; ///< (n) of the skin there
+    ShapeRows joint_moves;        ///< (3 joints x k) world joint places by coefficient
 };
 
 /// A person's shape: coefficients, and what the space cannot show.

@@ -15,8 +15,8 @@ constexpr double kMostRms = 0.02;         // metres, of a scan's points
 constexpr double kLeastPairedDepth = 0.6; // grazing pixels have no partner
 constexpr double kMostRmsDepth = 0.045;
 constexpr double kOneSideWeight = 0.1; // of the prior, see FitOptions
-constexpr double kLeastSeen = 0.12; // of the body's area: less says too little about it
-constexpr double kFarthest = 30.0;  // deviations a coefficient may have: overfitting takes a dozen
+constexpr double kLeastSeen = 0.12;    // of the body's area: less says too little about it
+constexpr double kFarthest = 30.0; // deviations a coefficient may have: overfitting takes a dozen
 // A stationary rig that was calibrated once: degrees, millimetres and depth scale that may be off.
 constexpr CameraTrust kCalibrated{0.0035, 0.005, 0.003};
 constexpr CameraTrust kLooselyPlaced{0.05, 0.05, 0.003};
@@ -162,7 +162,8 @@ void FitSession::judge(const Input& input) const {
     const double most = result_.state.shape.coefficients.cwiseAbs().maxCoeff();
     if (most > kFarthest)
         throw NotFitted("this does not look like a person: nobody is shaped like the nearest "
-                        "body to it (" + std::to_string(static_cast<int>(most)) +
+                        "body to it (" +
+                        std::to_string(static_cast<int>(most)) +
                         " standard deviations from the middle)");
     if (result_.seen_share < kLeastSeen)
         throw NotFitted("only " + percent(result_.seen_share) +

@@ -30,9 +30,9 @@ Eigen::Matrix3d log_derivative(const Vec3d& r) {
     const double angle = r.norm();
     const Eigen::Matrix3d cross = cross_matrix(r);
     const double factor =
-        angle < 1e-3 ? 1.0 / 12.0
-                     : 1.0 / (angle * angle) -
-                           (1.0 + std::cos(angle)) / (2.0 * angle * std::sin(angle));
+        angle < 1e-3
+            ? 1.0 / 12.0
+            : 1.0 / (angle * angle) - (1.0 + std::cos(angle)) / (2.0 * angle * std::sin(angle));
     return Eigen::Matrix3d::Identity() - 0.5 * cross + factor * cross * cross;
 }
 
@@ -74,8 +74,7 @@ int FitSolver::camera_at(const FitState& state, std::size_t camera) const {
 }
 
 void FitSolver::add_pairs(const FitLevel& level, std::span<const PosedLevel> posed,
-                          const AssociatedView& view, const FitState& state,
-                          const RowLoop& rows) {
+                          const AssociatedView& view, const FitState& state, const RowLoop& rows) {
     const auto& pairs = view.association->pairs;
     const int k = model_.component_count();
     const bool has_camera = view.camera < state.cameras.size() && view.eye;
@@ -97,7 +96,8 @@ void FitSolver::add_pairs(const FitLevel& level, std::span<const PosedLevel> pos
                 const Vec3f arm = pair.place - *view.eye;
                 Eigen::Map<Eigen::Matrix<float, kCameraUnknowns, 1>> camera(row + k +
                                                                             kPoseUnknowns);
-                camera << -arm.cross(pair.normal), -pair.normal, pair.skin ? -pair.normal.dot(arm) : 0.0f;
+                camera << -arm.cross(pair.normal), -pair.normal,
+                    pair.skin ? -pair.normal.dot(arm) : 0.0f;
             }
             row[width] = pair.distance;
             block.row(at) *= std::sqrt(pair.weight * information);
@@ -114,11 +114,11 @@ void FitSolver::add_pairs(const FitLevel& level, std::span<const PosedLevel> pos
         total += partial_[range].cast<double>();
     total = Eigen::MatrixXd(total.selfadjointView<Eigen::Lower>());
     // Where the blocks of shape, pose and camera stand among all unknowns.
-    const std::array<std::array<int, 3>, 3> parts{{{0, 0, k},
-                                                   {k, pose_at(view.instant), kPoseUnknowns},
-                                                   {k + kPoseUnknowns,
-                                                    has_camera ? camera_at(state, view.camera) : 0,
-                                                    has_camera ? kCameraUnknowns : 0}}};
+    const std::array<std::array<int, 3>, 3> parts{
+        {{0, 0, k},
+         {k, pose_at(view.instant), kPoseUnknowns},
+         {k + kPoseUnknowns, has_camera ? camera_at(state, view.camera) : 0,
+          has_camera ? kCameraUnknowns : 0}}};
     for (const auto& [from, to, size] : parts) {
         gradient_.segment(to, size) += total.block(from, width, size, 1);
         for (const auto& [from2, to2, size2] : parts)
@@ -131,8 +131,8 @@ void FitSolver::add_shape_prior(const FitPriors& priors, const FitState& state) 
     if (priors.sex) {
         const Population& population = populations_[*priors.sex == body::kSexes[0] ? 0 : 1];
         normal_.topLeftCorner(k, k) += priors.shape_weight * population.precision;
-        gradient_.head(k) +=
-            priors.shape_weight * (population.precision * (state.shape.coefficients - population.mean));
+        gradient_.head(k) += priors.shape_weight *
+                             (population.precision * (state.shape.coefficients - population.mean));
     } else {
         normal_.topLeftCorner(k, k).diagonal().array() += priors.shape_weight;
         gradient_.head(k) += priors.shape_weight * state.shape.coefficients;

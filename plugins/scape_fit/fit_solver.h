@@ -35,8 +35,8 @@ struct FitPriors {
 
 /// What a pair says: all pairs within a patch of this size count as one measurement of this
 /// deviation, since what the model cannot show goes together over such patches.
-inline constexpr double kPatchArea = 0.01;         // m^2
-inline constexpr double kModelDeviation = 0.004;   // metres
+inline constexpr double kPatchArea = 0.01;       // m^2
+inline constexpr double kModelDeviation = 0.004; // metres
 
 /// The pairs of one instant seen by one camera.
 struct AssociatedView {
@@ -75,7 +75,7 @@ class FitSolver {
     [[nodiscard]] int camera_at(const FitState& state, std::size_t camera) const;
 
     const FitModel& model_;
-    std::array<Population, 2> populations_; ///< in the order of kSexes
+    std::array<Population, 2> populations_;     ///< in the order of kSexes
     std::array<Mat3f, body::kJointCount> axes_; ///< of each joint's limits, as columns
     Eigen::MatrixXd normal_;
     Eigen::VectorXd gradient_;

@@ -32,8 +32,8 @@ constexpr std::size_t kStarts = 6;
 constexpr std::size_t kCoarsePoints = 3000;
 constexpr std::size_t kMediumPoints = 16000;
 constexpr float kOutlinePixel = 3e-4f; // m^2 that a pixel of the outline counts as
-constexpr float kFootReach = 0.05f;   // metres: a higher foot is lifted
-constexpr float kFootWeight = 0.004f; // m^2 that a sole counts as
+constexpr float kFootReach = 0.05f;    // metres: a higher foot is lifted
+constexpr float kFootWeight = 0.004f;  // m^2 that a sole counts as
 
 /// Every n-th point, areas made up for it.
 Observation fewer(const Observation& from, std::size_t count) {
@@ -116,9 +116,10 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
         associators.emplace_back(level);
     std::vector<Association> associations(observed.size()), contacts(posed.size());
     for (int round = 0; round <= stage.rounds; ++round) {
-        const float at = stage.rounds > 1 ? std::min(1.0f, static_cast<float>(round) /
-                                                               static_cast<float>(stage.rounds - 1))
-                                          : 1.0f;
+        const float at =
+            stage.rounds > 1
+                ? std::min(1.0f, static_cast<float>(round) / static_cast<float>(stage.rounds - 1))
+                : 1.0f;
         AssociationOptions pairing;
         pairing.reach_m = between(stage.reach_m, at);
         pairing.scale_m = between(stage.scale_m, at);
@@ -174,8 +175,8 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
     result.paired_share = paired / std::max(observed_area, 1e-9);
 }
 
-/// What is seen is cloth: the body lies within it, and where cloth is tight in one of the instants it
-/// lies on it (P5 4.3 without its bias: one shape for all instants, one-sided).
+/// What is seen is cloth: the body lies within it, and where cloth is tight in one of the instants
+/// it lies on it (P5 4.3 without its bias: one shape for all instants, one-sided).
 void Fitter::find_beneath(std::span<const Observation> observations, bool depth,
                           const FitOptions& options, const RowLoop& rows, FitResult& result) {
     Stage beneath{1, 14, {0.12f, 0.08f}, {0.08f, 0.05f}};
@@ -233,14 +234,16 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
             refine(of_instant, second, loose, rows, tried);
             if (tried.rms_m < best.rms_m) best = std::move(tried);
         }
-        if (f == 0) result = best;
-        else result.state.poses.push_back(best.state.poses.front());
+        if (f == 0)
+            result = best;
+        else
+            result.state.poses.push_back(best.state.poses.front());
     }
-    result.sex = options.sex.value_or(solver_.unlikeliness(result.state.shape.coefficients, body::kSexes[0]) <
-                                              solver_.unlikeliness(result.state.shape.coefficients,
-                                                                   body::kSexes[1])
-                                          ? body::kSexes[0]
-                                          : body::kSexes[1]);
+    result.sex = options.sex.value_or(
+        solver_.unlikeliness(result.state.shape.coefficients, body::kSexes[0]) <
+                solver_.unlikeliness(result.state.shape.coefficients, body::kSexes[1])
+            ? body::kSexes[0]
+            : body::kSexes[1]);
     // All together, finer and finer.
     const auto medium_points = fewer(observations, kMediumPoints * instants);
     Stage medium{1, 10, {0.10f, 0.06f}, {0.05f, 0.03f}};

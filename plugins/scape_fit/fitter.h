@@ -11,15 +11,15 @@
 namespace toile::scape_fit {
 
 struct FitOptions {
-    std::optional<body::Sex> sex;    ///< none: the likelier one
-    double shape_weight = 0.02;      ///< of the prior, see FitPriors
-    CameraTrust camera;              ///< how far cameras may be corrected
+    std::optional<body::Sex> sex;         ///< none: the likelier one
+    double shape_weight = 0.02;           ///< of the prior, see FitPriors
+    CameraTrust camera;                   ///< how far cameras may be corrected
     std::optional<geometry::Plane> floor; ///< feet that are near it stand on it
-    bool dressed = false;            ///< cloth may lie between skin and points
-    float cloth_weight = 0.03f;         ///< of points outside the body against those inside it
-    float cloth_margin_m = 0.002f;      ///< that count in full nevertheless
-    double dressed_shape_weight = 0.05; ///< of the prior beneath clothes
-    bool use_free_form = true;      ///< move onto detail that the components cannot show
+    bool dressed = false;                 ///< cloth may lie between skin and points
+    float cloth_weight = 0.03f;           ///< of points outside the body against those inside it
+    float cloth_margin_m = 0.002f;        ///< that count in full nevertheless
+    double dressed_shape_weight = 0.05;   ///< of the prior beneath clothes
+    bool use_free_form = true;            ///< move onto detail that the components cannot show
     FreeFormOptions free_form;
     std::vector<Vec3f> ups{Vec3f::UnitY()}; ///< directions that may be up
     /// Told how far it is, [0, 1]; true: stop. The fit then throws Cancelled.
@@ -39,7 +39,8 @@ struct FitResult {
 
 class Fitter {
   public:
-    explicit Fitter(const FitModel& model) : model_(model), library_(model), solver_(model), free_form_(model.level(0)) {}
+    explicit Fitter(const FitModel& model)
+        : model_(model), library_(model), solver_(model), free_form_(model.level(0)) {}
 
     /// `observations` of one person; instants and cameras are numbered from 0. \throw Error for
     /// no points; Cancelled

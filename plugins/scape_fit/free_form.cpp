@@ -19,8 +19,8 @@ void FreeForm::solve(std::span<const PosedLevel* const> posed,
     // Lindgren, Rue, Lindstrom 2011, alpha = 2: Q = tau^2 K' M^-1 K, K = kappa^2 M + L; in two
     // dimensions the variance is 1 / (4 pi kappa^2 tau^2) and the range sqrt(8) / kappa.
     const double kappa = std::sqrt(8.0) / options.correlation_m;
-    const double tau2 = 1.0 / (4.0 * std::numbers::pi * kappa * kappa * options.deviation_m *
-                               options.deviation_m);
+    const double tau2 =
+        1.0 / (4.0 * std::numbers::pi * kappa * kappa * options.deviation_m * options.deviation_m);
     Eigen::SparseMatrix<double> K = laplacian_;
     K.diagonal() += kappa * kappa * mass_;
     Eigen::SparseMatrix<double> system =

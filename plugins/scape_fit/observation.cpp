@@ -2,8 +2,8 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "scape_fit/contour.h"
 #include "geometry/point_tree.h"
+#include "scape_fit/contour.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -114,8 +114,8 @@ Observation thinned(std::span<const Vec3f> points, std::span<const Vec3f> normal
         if (normals.empty() && normal.dot(outwards) < 0.0f) normal = -normal;
         out.normals.push_back(normal);
         // A disc that holds the neighbours, shared among them.
-        const float share = static_cast<float>(M_PI) * near.back().squared /
-                            static_cast<float>(near.size());
+        const float share =
+            static_cast<float>(M_PI) * near.back().squared / static_cast<float>(near.size());
         out.areas.push_back(share * static_cast<float>(points.size()) /
                             static_cast<float>(std::min(points.size(), count)));
     }

@@ -14,18 +14,18 @@ namespace {
 
 constexpr int kTries = 300;
 constexpr std::size_t kTestPoints = 4000;
-constexpr float kOnPlane = 0.025f;    // metres: of the floor
-constexpr float kBelow = 0.06f;       // farther below the floor than this is not usual
-constexpr float kFloorCut = 0.035f;   // what counts as floor when the person is cut out
-constexpr float kCell = 0.05f;        // metres, of the grid that joins points into pieces
-constexpr float kWallShare = 0.10f;   // of all points: a plane with so many may be a wall
-constexpr float kWallExtent = 1.3f;   // metres that it must be wide and high
+constexpr float kOnPlane = 0.025f;  // metres: of the floor
+constexpr float kBelow = 0.06f;     // farther below the floor than this is not usual
+constexpr float kFloorCut = 0.035f; // what counts as floor when the person is cut out
+constexpr float kCell = 0.05f;      // metres, of the grid that joins points into pieces
+constexpr float kWallShare = 0.10f; // of all points: a plane with so many may be a wall
+constexpr float kWallExtent = 1.3f; // metres that it must be wide and high
 constexpr float kOnWall = 0.05f;
 constexpr float kTallest = 2.4f, kShortest = 0.7f, kWidest = 2.5f;
-constexpr float kCompanion = 0.5f;    // metres from the person's middle line, for small pieces
+constexpr float kCompanion = 0.5f; // metres from the person's middle line, for small pieces
 constexpr std::uint32_t kFewPoints = 50;
-constexpr float kFarthest = 5.0f;     // metres: a depth camera knows too little beyond
-constexpr float kFloorTilt = 0.26f;   // radians from +Y
+constexpr float kFarthest = 5.0f;   // metres: a depth camera knows too little beyond
+constexpr float kFloorTilt = 0.26f; // radians from +Y
 
 std::vector<Vec3f> some(std::span<const Vec3f> points, std::size_t count) {
     std::vector<Vec3f> out;

@@ -37,7 +37,7 @@ struct ObservedPerson {
 };
 
 /// The person in views of one instant, whose cameras stand in one world with +Y up.
-[[nodiscard]] ObservedPerson
-observe_person(std::span<const std::shared_ptr<DepthView>> views, std::size_t instant);
+[[nodiscard]] ObservedPerson observe_person(std::span<const std::shared_ptr<DepthView>> views,
+                                            std::size_t instant);
 
 } // namespace toile::scape_fit

@@ -15,10 +15,10 @@ struct Unit {
 constexpr std::array<Unit, 6> kUnits{
     {{"m", 1.0}, {"mm", 0.001}, {"cm", 0.01}, {"inch", 0.0254}, {"dm", 0.1}, {"foot", 0.3048}}};
 constexpr float kSmallest = 1.25f, kLargest = 2.25f; // metres: a person's largest extent
-constexpr float kLargestScene = 12.0f; // with what stands around
-constexpr float kStanding = 1.0f;    // metres that a person is at least tall above a floor
+constexpr float kLargestScene = 12.0f;               // with what stands around
+constexpr float kStanding = 1.0f; // metres that a person is at least tall above a floor
 constexpr float kOnFloor = 0.03f, kFloorExtent = 0.8f; // metres
-constexpr float kFloorTilt = 0.5f;                   // radians a floor may be off an axis
+constexpr float kFloorTilt = 0.5f;                     // radians a floor may be off an axis
 constexpr std::size_t kFewPoints = 300;
 constexpr std::size_t kPieceSamples = 200000;
 
@@ -83,7 +83,7 @@ geometry::TriangleMesh part(const geometry::TriangleMesh& mesh,
 }
 
 std::vector<Vec3f> axes() {
-    return {Vec3f::UnitY(),  Vec3f::UnitZ(),  -Vec3f::UnitY(),
+    return {Vec3f::UnitY(),  Vec3f::UnitZ(), -Vec3f::UnitY(),
             -Vec3f::UnitZ(), Vec3f::UnitX(), -Vec3f::UnitX()};
 }
 
@@ -114,10 +114,9 @@ bool try_unit(const geometry::TriangleMesh& mesh, PreparedScan& out) {
     const auto& points = mesh.positions;
     geometry::TriangleMesh person = mesh;
     const Vec3f longest = main_axis(points);
-    const float extent = std::max({largest_extent(points, longest),
-                                   largest_extent(points, Vec3f::UnitY()),
-                                   largest_extent(points, Vec3f::UnitZ()),
-                                   largest_extent(points, Vec3f::UnitX())});
+    const float extent =
+        std::max({largest_extent(points, longest), largest_extent(points, Vec3f::UnitY()),
+                  largest_extent(points, Vec3f::UnitZ()), largest_extent(points, Vec3f::UnitX())});
     if (extent < kSmallest || extent > kLargestScene) return false;
     for (const Vec3f& axis : axes()) {
         const auto floor = floor_along(points, axis);
@@ -147,8 +146,8 @@ bool try_unit(const geometry::TriangleMesh& mesh, PreparedScan& out) {
                              [&](const Vec3f& u) { return u.dot(way) > 0.97f; }))
                 out.ups.push_back(way);
     }
-    out.removed_share = 1.0 - static_cast<double>(person.positions.size()) /
-                                  static_cast<double>(points.size());
+    out.removed_share =
+        1.0 - static_cast<double>(person.positions.size()) / static_cast<double>(points.size());
     out.person = std::move(person);
     return true;
 }

@@ -6,10 +6,10 @@
 namespace toile::scape_fit {
 
 struct PreparedScan {
-    Observation observation;   ///< of the person alone, metres, the scan's own axes
-    std::vector<Vec3f> ups;    ///< directions that may be up
+    Observation observation; ///< of the person alone, metres, the scan's own axes
+    std::vector<Vec3f> ups;  ///< directions that may be up
     std::optional<geometry::Plane> floor;
-    std::string unit;          ///< "m", "cm", "mm", "dm", "inch", "foot"
+    std::string unit; ///< "m", "cm", "mm", "dm", "inch", "foot"
     double metres_per_unit = 1.0;
     bool turned_inside_out = false; ///< triangles faced inwards (a mirrored scan, for example)
     double removed_share = 0.0;     ///< of the points: floor and clutter

@@ -69,8 +69,7 @@ ShapeVector library_shape(const body::BodySpace& space, body::Sex sex, double de
 }
 
 Mat3f upright(const Vec3f& up, float yaw) {
-    return (body::swing(Vec3f::UnitY(), up) * body::about(Vec3f::UnitY(), yaw))
-        .toRotationMatrix();
+    return (body::swing(Vec3f::UnitY(), up) * body::about(Vec3f::UnitY(), yaw)).toRotationMatrix();
 }
 
 struct Candidate {
@@ -102,8 +101,12 @@ StartLibrary::StartLibrary(const FitModel& model) {
                 for (const float legs : kLegs) {
                     const body::Pose pose = library_pose(skeleton, arm, legs);
                     pose_level(model, level, {shape, {}}, pose, posed);
-                    Entry entry{shape, pose, geometry::PointTree(posed.positions),
-                                posed.positions[0], posed.positions[0], Vec3f::Zero()};
+                    Entry entry{shape,
+                                pose,
+                                geometry::PointTree(posed.positions),
+                                posed.positions[0],
+                                posed.positions[0],
+                                Vec3f::Zero()};
                     for (const Vec3f& p : posed.positions) {
                         entry.low = entry.low.cwiseMin(p);
                         entry.high = entry.high.cwiseMax(p);

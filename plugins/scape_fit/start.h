@@ -23,9 +23,8 @@ class StartLibrary {
 
     /// The best places of the best bodies, best first, at most `count`, no two of them alike.
     /// `points`: a few hundred, metres; `ups`: directions that may be up (unit).
-    [[nodiscard]] std::vector<Start> find(std::span<const Vec3f> points,
-                                          std::span<const Vec3f> ups, std::size_t count,
-                                          const RowLoop& rows) const;
+    [[nodiscard]] std::vector<Start> find(std::span<const Vec3f> points, std::span<const Vec3f> ups,
+                                          std::size_t count, const RowLoop& rows) const;
 
   private:
     struct Entry {

@@ -1,4 +1,5 @@
-// Bodies on the command line: made from numbers, found in scans and depth pictures, measured, dressed.
+// Bodies on the command line: made from numbers, found in scans and depth pictures, measured,
+// dressed.
 #include "core/bytes.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
@@ -31,7 +32,9 @@ double value(const nlohmann::json& body, const char* name) {
 
 class BodyTest : public testing::Test {
   protected:
-    [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] std::string at(const std::string& name) const {
+        return (folder_ / name).string();
+    }
     TemporaryFolder folder_;
 };
 
@@ -56,8 +59,7 @@ TEST_F(BodyTest, AScanIsFittedMeasuredAndWrittenBack) {
     const ProgramResult direct =
         run_toile({"measure", at("a.ply"), "--json", "--measurement", "waist_girth"});
     ASSERT_EQ(direct.status, 0) << direct.output;
-    EXPECT_NEAR(value(json_in(direct.output), "waist_girth"),
-                value(body, "waist_girth"), 0.004);
+    EXPECT_NEAR(value(json_in(direct.output), "waist_girth"), value(body, "waist_girth"), 0.004);
 }
 
 TEST_F(BodyTest, FourDepthCamerasGiveABody) {

@@ -43,8 +43,7 @@ struct Settings {
 };
 
 /// Four sides at 2.4 m, or the front alone; landscape pictures.
-sensor::Scenario scenario_of(const Settings& settings, const fs::path& person,
-                             std::uint64_t seed) {
+sensor::Scenario scenario_of(const Settings& settings, const fs::path& person, std::uint64_t seed) {
     sensor::Scenario out;
     out.seed = seed;
     out.color = false;
@@ -112,10 +111,9 @@ std::vector<float> vertex_areas(std::span<const Vec3f> positions,
                                 std::span<const toile::Triangle> triangles) {
     std::vector<float> out(positions.size(), 0.0f);
     for (const auto& t : triangles) {
-        const float third = (positions[t[1]] - positions[t[0]])
-                                .cross(positions[t[2]] - positions[t[0]])
-                                .norm() /
-                            6.0f;
+        const float third =
+            (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]).norm() /
+            6.0f;
         for (const auto v : t)
             out[v] += third;
     }
@@ -136,9 +134,9 @@ bool in_core(body::Part part, const body::TestPerson& person, std::size_t v) {
             (p - person.skeleton.rest(left ? body::Joint::left_lower_arm
                                            : body::Joint::right_lower_arm))
                     .norm() > 0.9f * (person.skeleton.rest(left ? body::Joint::left_hand
-                                                                 : body::Joint::right_hand) -
+                                                                : body::Joint::right_hand) -
                                       person.skeleton.rest(left ? body::Joint::left_lower_arm
-                                                                 : body::Joint::right_lower_arm))
+                                                                : body::Joint::right_lower_arm))
                                          .norm())
             return false;
         if (p.y() < person.skeleton.rest(body::Joint::left_foot).y()) return false;
@@ -257,16 +255,15 @@ void run(const Settings& settings) {
                  [&](std::size_t v) { return full.trust[v] > 0.99f; }, truth,
                  person.rest.triangles));
         note("surface ends",
-                   mean_distance(
-                       truth, areas,
-                       [&](std::size_t v) { return !in_core(person.parts[v], person, v); },
-                       posed.positions, full.triangles));
+             mean_distance(
+                 truth, areas, [&](std::size_t v) { return !in_core(person.parts[v], person, v); },
+                 posed.positions, full.triangles));
         for (const body::GirthPlane& plane : person.girths) {
             const auto j = static_cast<std::size_t>(plane.joint);
             toile::RigidTransform moved;
             moved.rotation = joints[0][j].rotation;
-            moved.translation = joints[0][j].translation -
-                                moved.rotation * person.skeleton.rest_positions[j];
+            moved.translation =
+                joints[0][j].translation - moved.rotation * person.skeleton.rest_positions[j];
             const auto true_girth = body::girth_in(plane, moved, truth, person.rest.triangles);
             const auto girth = body::girth_in(plane, moved, posed.positions, full.triangles);
             if (true_girth && girth)
@@ -278,21 +275,21 @@ void run(const Settings& settings) {
         float top = 0.0f;
         for (const Vec3f& p : rest.positions)
             top = std::max(top, p.y());
-        note("length stature",
-                   1000.0 * (static_cast<double>(top) - person.lengths.at("stature")));
+        note("length stature", 1000.0 * (static_cast<double>(top) - person.lengths.at("stature")));
         for (const auto j : {body::Joint::left_upper_arm, body::Joint::left_lower_arm,
                              body::Joint::left_hand, body::Joint::left_upper_leg,
                              body::Joint::left_lower_leg, body::Joint::neck, body::Joint::hips})
             note("joint " + std::string(body::joint_name(j)),
-                       1000.0 * static_cast<double>(
-                                    (posed.world[static_cast<std::size_t>(j)].translation -
-                                     joints[0][static_cast<std::size_t>(j)].translation)
-                                        .norm()));
+                 1000.0 *
+                     static_cast<double>((posed.world[static_cast<std::size_t>(j)].translation -
+                                          joints[0][static_cast<std::size_t>(j)].translation)
+                                             .norm()));
         rows.push_back(row);
         std::printf("%s%s bmi %.1f: %.2f s, rms %.1f mm, paired %.2f, |c| %.2f, sex %s%s, core "
                     "%.2f mm\n",
                     person.id.c_str(), person.woman ? " w" : " m", person.bmi, took,
-                    1000.0 * result.rms_m, result.paired_share, result.state.shape.coefficients.norm(),
+                    1000.0 * result.rms_m, result.paired_share,
+                    result.state.shape.coefficients.norm(),
                     result.sex == body::Sex::female ? "w" : "m",
                     (result.sex == body::Sex::female) == person.woman ? "" : " (wrong)", core);
         std::fflush(stdout);
@@ -311,20 +308,34 @@ int main(int argc, char** argv) {
     for (int i = 3; i < argc; ++i) {
         const std::string key = argv[i];
         const auto value = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
-        if (key == "--views") settings.views = std::stoi(value());
-        else if (key == "--noise") settings.noise = value();
-        else if (key == "--pose") settings.poses.emplace_back(value());
-        else if (key == "--count") settings.count = std::stoi(value());
-        else if (key == "--json") settings.json = value();
-        else if (key == "--first") settings.first = std::stoi(value());
-        else if (key == "--weight") settings.shape_weight = std::stod(value());
-        else if (key == "--information") settings.information = std::stod(value());
-        else if (key == "--deviation") settings.deviation = std::stod(value());
-        else if (key == "--correlation") settings.correlation = std::stod(value());
-        else if (key == "--components-only") settings.free_form = false;
-        else if (key == "--cameras") settings.cameras = true;
-        else if (key == "--scan") settings.scan = true;
-        else return std::fprintf(stderr, "unknown option %s\n", key.c_str()), 2;
+        if (key == "--views")
+            settings.views = std::stoi(value());
+        else if (key == "--noise")
+            settings.noise = value();
+        else if (key == "--pose")
+            settings.poses.emplace_back(value());
+        else if (key == "--count")
+            settings.count = std::stoi(value());
+        else if (key == "--json")
+            settings.json = value();
+        else if (key == "--first")
+            settings.first = std::stoi(value());
+        else if (key == "--weight")
+            settings.shape_weight = std::stod(value());
+        else if (key == "--information")
+            settings.information = std::stod(value());
+        else if (key == "--deviation")
+            settings.deviation = std::stod(value());
+        else if (key == "--correlation")
+            settings.correlation = std::stod(value());
+        else if (key == "--components-only")
+            settings.free_form = false;
+        else if (key == "--cameras")
+            settings.cameras = true;
+        else if (key == "--scan")
+            settings.scan = true;
+        else
+            return std::fprintf(stderr, "unknown option %s\n", key.c_str()), 2;
     }
     try {
         run(settings);

@@ -110,8 +110,7 @@ TEST(DepthFit, OneCameraThatDoesNotKnowWhereItStands) {
     geometry::vertex_normals(who.surface.positions, who.surface.triangles, normals);
     for (std::size_t v = 0; v < normals.size(); ++v)
         if (normals[v].z() > 0.4f) front.push_back(who.surface.positions[v]);
-    EXPECT_LT(1000.0 *
-                  mean_distance(front, {found.positions, {}, adult().level(0).triangles}),
+    EXPECT_LT(1000.0 * mean_distance(front, {found.positions, {}, adult().level(0).triangles}),
               6.0);
     EXPECT_FALSE(session().report().at("calibrated").get<bool>());
 }

@@ -62,7 +62,9 @@ TEST(FitModel, OffsetsMoveTheSurfaceAndNotTheJoints) {
     const body::BodyShape plain = rest_shape(adult(), who.shape);
     who.shape.offsets.assign(adult().level(0).vertices.size(), 0.01f);
     const body::BodyShape fuller = rest_shape(adult(), who.shape);
-    const auto hips_height = [](const body::BodyShape& s) { return s.skeleton.rest_positions[0].y(); };
+    const auto hips_height = [](const body::BodyShape& s) {
+        return s.skeleton.rest_positions[0].y();
+    };
     EXPECT_NEAR(hips_height(fuller), hips_height(plain) + 0.01f, 1e-3f) << "it stands on its soles";
     geometry::TriangleMesh a{plain.positions, {}, adult().level(0).triangles};
     geometry::TriangleMesh b{fuller.positions, {}, adult().level(0).triangles};

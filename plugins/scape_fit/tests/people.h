@@ -33,8 +33,8 @@ struct Somebody {
         const body::Skeleton skeleton = adult().skeleton(shape.coefficients);
         pose.hips_position = Vec3f(0.1f, 0.95f, -0.2f);
         const auto turn = [&](body::Joint joint, const Vec3f& share) {
-            pose.rotations[static_cast<std::size_t>(joint)] = body::from_rotation_vector(
-                body::limited_rotation(skeleton, joint, share));
+            pose.rotations[static_cast<std::size_t>(joint)] =
+                body::from_rotation_vector(body::limited_rotation(skeleton, joint, share));
         };
         turn(body::Joint::left_upper_arm, Vec3f(0.0f, 0.1f, -0.5f));
         turn(body::Joint::right_upper_arm, Vec3f(0.0f, 0.1f, -0.3f));

@@ -20,9 +20,9 @@ void expect_found(const geometry::TriangleMesh& scan, const geometry::TriangleMe
     ASSERT_NO_THROW(session().fit(options, &serial_rows));
     const PosedLevel found = session().surface(0);
     EXPECT_LT(1000.0 * mean_distance(found.positions, person), most_mm);
-    EXPECT_LT(1000.0 * mean_distance(person.positions,
-                                     {found.positions, {}, adult().level(0).triangles}),
-              most_mm);
+    EXPECT_LT(
+        1000.0 * mean_distance(person.positions, {found.positions, {}, adult().level(0).triangles}),
+        most_mm);
 }
 
 TEST(ScanFit, FindsAPersonOfTheSpace) {
@@ -54,9 +54,9 @@ TEST(ScanFit, UnitAndWayUpAreFoundAndSaid) {
 
 TEST(ScanFit, UpsideDownAndTurned) {
     const Somebody who;
-    const Mat3f turn = (Eigen::AngleAxisf(3.1415927f, Vec3f::UnitX()) *
-                        Eigen::AngleAxisf(2.0f, Vec3f::UnitY()))
-                           .toRotationMatrix();
+    const Mat3f turn =
+        (Eigen::AngleAxisf(3.1415927f, Vec3f::UnitX()) * Eigen::AngleAxisf(2.0f, Vec3f::UnitY()))
+            .toRotationMatrix();
     expect_found(moved(who.surface, turn), moved(who.surface, turn), 1.5);
     EXPECT_LT(session().report().at("up")[1].get<double>(), -0.9);
 }
