@@ -16,12 +16,6 @@ constexpr float kLostReach = 0.05f; // of points whose ray misses the model, met
 constexpr float kLostWeight = 0.5f;
 constexpr std::uint32_t kGrain = 2048;
 
-float geman_mcclure(float distance, float scale) {
-    const float s = scale * scale;
-    const float root = s / (s + distance * distance);
-    return root * root;
-}
-
 std::size_t largest(const Vec3f& barycentric) {
     int corner = 0;
     barycentric.maxCoeff(&corner);
@@ -33,10 +27,13 @@ std::size_t largest(const Vec3f& barycentric) {
 void ObservedPoints::correct(const CameraCorrection& by) {
     if (!observation.eye) return;
     correction = by;
+    const Eigen::Matrix3f turn = rotation_of(by.turn).cast<float>();
+    const Mat3f scaled = static_cast<float>(by.scale) * turn;
+    const Vec3f place = *observation.eye + by.shift.cast<float>();
     for (std::size_t p = 0; p < points.size(); ++p)
-        points[p] = by.apply(observation.points[p], *observation.eye);
+        points[p] = place + scaled * (observation.points[p] - *observation.eye);
     for (std::size_t e = 0; e < outline.size(); ++e)
-        outline[e] = by.turned(observation.outline[e]);
+        outline[e] = turn * observation.outline[e];
     eye = *observation.eye + by.shift.cast<float>();
 }
 

@@ -3,7 +3,6 @@
 
 #include "core/types.h"
 
-#include <cmath>
 #include <vector>
 
 namespace toile::scape_fit {
@@ -23,10 +22,13 @@ struct Association {
     double paired_area = 0.0;   ///< m^2 of points that have a partner
     double observed_area = 0.0; ///< m^2 of all points
     double squares = 0.0;       ///< m^4: area times squared distance of the pairs, not weighted
-    /// Root mean square distance of the pairs, metres.
-    [[nodiscard]] double rms() const {
-        return paired_area > 0.0 ? std::sqrt(squares / paired_area) : 0.0;
-    }
 };
+
+/// Robust weight of a distance, 1 at 0 (Geman and McClure).
+inline float geman_mcclure(float distance, float scale) {
+    const float s = scale * scale;
+    const float root = s / (s + distance * distance);
+    return root * root;
+}
 
 } // namespace toile::scape_fit

@@ -10,12 +10,6 @@ namespace {
 
 constexpr float kBehind = 0.10f; // metres that the background lies behind the person
 
-float geman_mcclure(float distance, float scale) {
-    const float s = scale * scale;
-    const float root = s / (s + distance * distance);
-    return root * root;
-}
-
 } // namespace
 
 std::vector<Vec3f> outline(const DepthView& view, std::span<const std::uint8_t> mask) {

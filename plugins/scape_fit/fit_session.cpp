@@ -109,8 +109,7 @@ FitSession::Input FitSession::scan_input() {
     return out;
 }
 
-FitSession::Input FitSession::depth_input(const SessionOptions& options, const RowLoop&) {
-    (void)options;
+FitSession::Input FitSession::depth_input() const {
     Input out;
     out.depth = true;
     const bool calibrated =
@@ -173,7 +172,7 @@ void FitSession::judge(const Input& input) const {
 void FitSession::fit(const SessionOptions& options, const RowLoop& rows) {
     if (!scan_ && instants_.empty()) throw NotFitted("nothing was fed to be fitted");
     fitted_ = false;
-    Input input = scan_ ? scan_input() : depth_input(options, rows);
+    Input input = scan_ ? scan_input() : depth_input();
     input.options.sex = options.sex;
     input.options.dressed = options.dressed;
     input.options.progress = options.progress;

@@ -56,7 +56,7 @@ class FitSession {
   private:
     struct Input;
     [[nodiscard]] Input scan_input();
-    [[nodiscard]] Input depth_input(const SessionOptions& options, const RowLoop& rows);
+    [[nodiscard]] Input depth_input() const;
     void judge(const Input& input) const;
 
     const FitModel& model_;

@@ -185,20 +185,20 @@ void Fitter::find_beneath(std::span<const Observation> observations, bool depth,
     beneath.outside_weight = options.cloth_weight;
     beneath.cloth_margin_m = options.cloth_margin_m;
     beneath.shape_weight = options.dressed_shape_weight;
+    if (depth) beneath.empty_weight = 0.0f; // as in the fine stage
     beneath.from = 0.6, beneath.to = 1.0;
     refine(observations, beneath, options, rows, result);
 }
 
 FitResult Fitter::fit(std::span<const Observation> observations, const FitOptions& options,
                       const RowLoop& rows) {
-    std::size_t instants = 0, cameras = 0, first_points = 0;
+    std::size_t instants = 0, cameras = 0;
     bool depth = false;
     for (const Observation& one : observations) {
         if (one.points.empty()) throw Error("an observation without points");
         instants = std::max(instants, one.instant + 1);
         if (one.eye) cameras = std::max(cameras, one.camera + 1);
         depth = depth || one.eye.has_value();
-        if (one.instant == 0) first_points += one.points.size();
     }
     if (instants == 0) throw Error("nothing was observed");
 
