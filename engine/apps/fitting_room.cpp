@@ -59,6 +59,7 @@ FittingRoom::FittingRoom(const GlobalOptions& options, const Outfit& outfit, boo
     dressing_.limits.thread_count = services_.thread_count();
     body_ = load_body(outfit.body);
     std::vector<std::shared_ptr<const pipeline::BoundaryGarment>> garments;
+    garments.reserve(outfit.garments.size());
     for (const std::string& id : outfit.garments)
         garments.push_back(load_garment(id, outfit.size));
     std::stable_sort(garments.begin(), garments.end(),

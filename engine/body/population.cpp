@@ -186,7 +186,8 @@ Population make_population(const PeopleMaker& maker, const PopulationOptions& op
         for (int i = 0; i < options.per_sex; ++i)
             wish(out.matched, rows.row(order[static_cast<std::size_t>(i)]));
         for (int i = 0; i < ordinary; ++i)
-            wish(out.unseen, rows.row(order[static_cast<std::size_t>(options.per_sex + i)]));
+            wish(out.unseen, rows.row(order[static_cast<std::size_t>(options.per_sex) +
+                                            static_cast<std::size_t>(i)]));
         heavy(out.heavy, options.heavy_per_sex);
         heavy(out.unseen, options.unseen_per_sex - ordinary);
     }

@@ -76,6 +76,7 @@ PoseDeformation fit_deformation(const BodyModel& model, const std::vector<Exampl
     out.joints = nearest_joints(model, triangles);
     out.weights.assign(triangles.size(), Eigen::Matrix<float, 6, kPoseFeatures>::Zero());
     std::vector<Mat3f> rest_inverse;
+    rest_inverse.reserve(triangles.size());
     for (const auto& t : triangles)
         rest_inverse.push_back(frame(model.rest.positions, t).inverse());
     std::vector<Quatf> rotations(triangles.size());
@@ -95,6 +96,7 @@ PoseDeformation fit_deformation(const BodyModel& model, const std::vector<Exampl
         }
     }
     std::vector<Pose> poses;
+    poses.reserve(examples.size());
     for (const auto& example : examples)
         poses.push_back(example.pose);
     const auto inverses = regression_inverses(poses, out.joints, ridge);
@@ -212,6 +214,7 @@ TrainedPose train_pose(const BodyModel& model, const PoseOptions& options) {
     TrainedPose out;
     out.tables.deformation = fit_deformation(model, examples, options.ridge);
     std::vector<Pose> poses;
+    poses.reserve(static_cast<std::size_t>(options.baked_poses));
     Random random(options.seed + 2000000);
     for (int i = 0; i < options.baked_poses; ++i)
         poses.push_back(random_pose(model.skeleton, random));

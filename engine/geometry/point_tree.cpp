@@ -37,7 +37,7 @@ PointTree::~PointTree() = default;
 PointTree::PointTree(PointTree&&) noexcept = default;
 PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 
-PointTree::Neighbour PointTree::nearest(const Vec3f& point) const noexcept {
+PointTree::Neighbour PointTree::nearest(const Vec3f& point) const {
     std::uint32_t index = 0;
     float squared = 0.0f;
     tree_->index->knnSearch(point.data(), 1, &index, &squared);

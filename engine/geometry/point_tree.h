@@ -22,7 +22,7 @@ class PointTree {
         std::uint32_t index = 0;
         float squared = 0.0f; ///< squared distance, m^2
     };
-    [[nodiscard]] Neighbour nearest(const Vec3f& point) const noexcept;
+    [[nodiscard]] Neighbour nearest(const Vec3f& point) const;
     /// The nearest `count` (all, when there are fewer), nearest first.
     [[nodiscard]] std::vector<Neighbour> nearest(const Vec3f& point, std::size_t count) const;
 

@@ -145,10 +145,10 @@ FittedBody BodyFit::fit(const FitRequest& request, host::Job& job) {
     instance_->call("fit", [&](toile_instance* instance) {
         return fit_->fit(instance, &options, job.handle());
     });
-    return take(job);
+    return take();
 }
 
-FittedBody BodyFit::take(host::Job&) {
+FittedBody BodyFit::take() {
     FittedBody out;
     JointArray joints{};
     auto person = host::sized<toile_person>();

@@ -61,7 +61,7 @@ class BodyFit {
   private:
     void begin(std::span<const toile_stream> streams, host::Job& job);
 
-    [[nodiscard]] FittedBody take(host::Job& job);
+    [[nodiscard]] FittedBody take();
 
     std::unique_ptr<host::Instance> instance_;
     const toile_body_source* source_ = nullptr;

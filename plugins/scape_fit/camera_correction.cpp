@@ -18,8 +18,4 @@ Vec3f CameraCorrection::undo(const Vec3f& point, const Vec3f& place) const {
     return place + (rotation_of(turn).transpose() * local / scale).cast<float>();
 }
 
-Vec3f CameraCorrection::turned(const Vec3f& direction) const {
-    return (rotation_of(turn) * direction.cast<double>()).cast<float>();
-}
-
 } // namespace toile::scape_fit

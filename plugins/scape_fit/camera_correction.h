@@ -14,7 +14,6 @@ struct CameraCorrection {
     /// World points as the reported camera has them, and as they are.
     [[nodiscard]] Vec3f apply(const Vec3f& point, const Vec3f& place) const;
     [[nodiscard]] Vec3f undo(const Vec3f& point, const Vec3f& place) const;
-    [[nodiscard]] Vec3f turned(const Vec3f& direction) const;
 };
 
 /// Rotation of a rotation vector.

@@ -24,7 +24,7 @@ std::vector<Vec3f> outline(const DepthView& view, std::span<const std::uint8_t> 
             const float own = view.depth.metres[static_cast<std::size_t>(at)];
             for (const auto& [dx, dy] : kBeside) {
                 if (x + dx < 0 || x + dx >= width || y + dy < 0 || y + dy >= height) continue;
-                const auto beside = static_cast<std::size_t>(at + dy * width + dx);
+                const auto beside = static_cast<std::size_t>(std::ptrdiff_t{at} + dy * width + dx);
                 if (mask[beside] != 0 || !(view.depth.metres[beside] > own + kBehind)) continue;
                 const auto ray = imaging::unproject(
                     view.camera, Eigen::Vector2d(x + 0.5 * dx, y + 0.5 * dy), 1.0);

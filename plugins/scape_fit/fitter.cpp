@@ -230,7 +230,7 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
             Stage first{coarse, 3, {0.3f, 0.2f}, {0.15f, 0.10f}};
             first.fix_shape = true;
             refine(of_instant, first, loose, rows, tried);
-            Stage second{coarse, 12, {0.2f, 0.08f}, {0.10f, 0.04f}};
+            const Stage second{coarse, 12, {0.2f, 0.08f}, {0.10f, 0.04f}};
             refine(of_instant, second, loose, rows, tried);
             if (tried.rms_m < best.rms_m) best = std::move(tried);
         }

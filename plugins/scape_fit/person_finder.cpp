@@ -136,7 +136,9 @@ std::vector<Piece> pieces_of(std::span<const Vec3f> points, const Mat3f& level,
     std::vector<std::uint32_t> parent, cell_of(points.size(), 0);
     std::vector<Eigen::Vector3i> places;
     const auto key = [](const Eigen::Vector3i& c) {
-        const auto part = [](int v) { return static_cast<std::uint64_t>(v + (1 << 20)); };
+        const auto part = [](int v) {
+            return static_cast<std::uint64_t>(std::int64_t{v} + (1 << 20));
+        };
         return part(c.x()) << 42 | part(c.y()) << 21 | part(c.z());
     };
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -174,6 +176,7 @@ std::vector<Piece> pieces_of(std::span<const Vec3f> points, const Mat3f& level,
         piece.high = piece.high.cwiseMax(p);
     }
     std::vector<Piece> out;
+    out.reserve(by_root.size());
     for (auto& [number, piece] : by_root)
         out.push_back(std::move(piece));
     return out;

@@ -62,7 +62,7 @@ body::Pose library_pose(const body::Skeleton& skeleton, const ArmPose& arm, floa
 /// Middle of a sex's people, moved along their largest variation.
 ShapeVector library_shape(const body::BodySpace& space, body::Sex sex, double deviations) {
     const body::CoefficientPrior& prior = space.prior(sex);
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(prior.covariance);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(prior.covariance);
     const int last = static_cast<int>(prior.mean.size()) - 1;
     return prior.mean +
            deviations * std::sqrt(axes.eigenvalues()[last]) * axes.eigenvectors().col(last);
