@@ -29,7 +29,10 @@ std::vector<garment::block::SizeOrder> read_sizes(const std::string& text) {
 
 void make_block_package(const BlockOptions& options, const garment::PackageLimits& limits) {
     const auto orders = read_sizes(options.sizes);
-    const garment::GarmentPackage package = garment::block::make_block(options.block, orders);
+    garment::block::Design design = garment::block::find_design(options.block);
+    if (!options.id.empty()) design.id = options.id;
+    design.girth_ease_m = options.girth_ease_m;
+    const garment::GarmentPackage package = garment::block::make_block(design, orders);
     garment::write_package(package, options.out);
     for (const auto& size : package.sizes) {
         std::printf("size %s on %s: %zu vertices, %zu triangles\n", size.entry.name.c_str(),

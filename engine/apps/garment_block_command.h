@@ -4,6 +4,7 @@
 #include "garment/package.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace toile::apps {
@@ -12,6 +13,8 @@ namespace toile::apps {
 struct BlockOptions {
     std::string block;                               ///< "t-shirt"; empty: no block is wanted
     std::string sizes = "S=woman,M=mannequin,L=man"; ///< smallest to largest, each on its avatar
+    std::string id;                                  ///< of the garment; empty: the block's
+    std::optional<double> girth_ease_m;              ///< beyond chest or hip; none: the block's own
     std::filesystem::path out;
 };
 

@@ -113,6 +113,7 @@ struct NewOptions {
 void make_new(NewOptions& options) {
     if (!options.block.block.empty()) {
         options.block.out = options.out;
+        options.block.id = options.import.id;
         make_block_package(options.block, limits());
         return;
     }
@@ -169,6 +170,11 @@ void add_new(CLI::App& garment) {
         ->add_option("--sizes", options->block.sizes,
                      "Sizes of the block, smallest first, each with the avatar it is cut for")
         ->capture_default_str();
+    command
+        ->add_option("--girth-ease", options->block.girth_ease_m,
+                     "How much wider than the body the block is: metres around the chest of a "
+                     "t-shirt, around the hip of a skirt")
+        ->check(CLI::Range(-0.1, 0.5));
     command->add_option("--id", options->import.id, "Id of the new garment: t-shirt");
     command->add_option("--out", options->out, "Folder to write")->required()->type_name("DIR");
     command->add_option("--made-on", options->import.made_on,

@@ -45,10 +45,17 @@ Vec3f hex(const int rgb) {
 
 Design t_shirt() {
     Design d;
-    d.id = "t-shirt";
+    d.id = d.kind = "t-shirt";
     d.name = "T-shirt, crew neck";
     d.edge_m = 0.0158;
-    d.draft = [](const BodyProbe& body) { return draft_t_shirt(body); };
+    d.draft = [](const BodyProbe& body, std::optional<double> girth_ease) {
+        TShirtOptions options;
+        if (girth_ease) {
+            options.hem_ease_m += *girth_ease - options.chest_ease_m;
+            options.chest_ease_m = *girth_ease;
+        }
+        return draft_t_shirt(body, options);
+    };
     d.fabric = jersey();
     d.layer = 1;
     d.drape.density_kg_m2 = d.fabric.density_kg_m2;
@@ -61,10 +68,14 @@ Design t_shirt() {
 
 Design skirt() {
     Design d;
-    d.id = "skirt";
+    d.id = d.kind = "skirt";
     d.name = "A-line skirt, knee-length";
     d.edge_m = 0.0168;
-    d.draft = [](const BodyProbe& body) { return draft_skirt(body); };
+    d.draft = [](const BodyProbe& body, std::optional<double> girth_ease) {
+        SkirtOptions options;
+        options.hip_ease_m = girth_ease.value_or(options.hip_ease_m);
+        return draft_skirt(body, options);
+    };
     d.fabric = twill();
     d.layer = 0;
     d.drape.density_kg_m2 = d.fabric.density_kg_m2;

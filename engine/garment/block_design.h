@@ -23,9 +23,11 @@ struct Colourway {
 };
 
 struct Design {
-    std::string id, name;
+    std::string id, name, kind;
     double edge_m = 0.0155; ///< of the simulation mesh
-    Pattern (*draft)(const BodyProbe&) = nullptr;
+    /// Its pattern for a body, that much wider than the body (none: as wide as is usual).
+    Pattern (*draft)(const BodyProbe&, std::optional<double> girth_ease_m) = nullptr;
+    std::optional<double> girth_ease_m; ///< metres beyond chest or hip
     Fabric fabric;
     double ease_m = 0.006;
     std::uint32_t layer = 0;

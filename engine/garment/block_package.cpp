@@ -168,7 +168,7 @@ Manifest make_manifest(const Design& design) {
     m.name = design.name;
     m.maker = "Toile";
     m.licence = "Apache-2.0";
-    m.kind = design.id;
+    m.kind = design.kind;
     m.layer = design.layer;
     m.ease_m = design.ease_m;
     m.fabric = design.fabric;
@@ -198,7 +198,7 @@ GarmentPackage make_block(const Design& design, const std::span<const SizeOrder>
     for (const SizeOrder& order : orders) {
         probes.push_back(std::make_unique<BodyProbe>(*order.body));
         views.push_back(probes.back().get());
-        patterns.push_back(design.draft(*probes.back()));
+        patterns.push_back(design.draft(*probes.back(), design.girth_ease_m));
     }
     GarmentPackage package;
     package.manifest = make_manifest(design);

@@ -120,10 +120,9 @@ void Associator::sum_up(const ObservedPoints& observed, const AssociationOptions
         sum.distance /= sum.weight;
         sum.place /= sum.weight;
         sum.normal = posed_->normals[v];
-        // One-sided where cloth may be (Balan and Black 2008): of many noisy points together, so
-        // that their noise does not pull the body in.
-        if (level_.clothed[v] != 0 && sum.distance < -options.cloth_margin_m)
-            sum.weight *= options.outside_weight;
+        sum.observed = sum.weight;
+        // Of many noisy points together, so that their noise does not pull the body in.
+        if (options.cloth != nullptr) sum.weight *= options.cloth->weight(v, sum.distance);
         out.pairs.push_back(sum);
     }
 }
@@ -184,7 +183,7 @@ void Associator::associate(const ObservedPoints& observed, const AssociationOpti
     pull_from_empty(observed, options, out);
     if (options.outline_weight > 0.0f && observed.eye && !observed.outline.empty())
         contour_.pair(*posed_, *observed.eye, observed.outline, options.reach_m, options.scale_m,
-                      options.outline_weight, options.outside_weight, out.pairs);
+                      options.outline_weight, options.cloth, out.pairs);
 }
 
 } // namespace toile::scape_fit

@@ -6,6 +6,7 @@
 #include "geometry/nearest_surface.h"
 #include "geometry/point_tree.h"
 #include "scape_fit/camera_correction.h"
+#include "scape_fit/cloth_gaps.h"
 #include "scape_fit/contour.h"
 #include "scape_fit/fit_model.h"
 #include "scape_fit/observation.h"
@@ -19,10 +20,7 @@ struct AssociationOptions {
     bool along_rays = false;     ///< pairs on the line of sight: unbiased by noise along it
     float empty_weight = 0.3f;   ///< of model places where the observation has nothing
     float outline_weight = 0.0f; ///< m^2 that a pixel of the outline counts as; 0: not used
-    /// Of places whose points lie outside the model on the whole, on parts that clothes cover:
-    /// below 1 for dressed people.
-    float outside_weight = 1.0f;
-    float cloth_margin_m = 0.0f; ///< and of those only, what lies at least so far outside
+    const ClothGaps* cloth = nullptr; ///< of dressed people: points outside the body may be cloth
 };
 
 /// One observation as the fit uses it.

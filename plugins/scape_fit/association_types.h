@@ -14,6 +14,7 @@ struct VertexPair {
     Vec3f place = Vec3f::Zero();  ///< observed, world
     float distance = 0.0f;        ///< model minus observed, metres
     float weight = 0.0f;          ///< m^2 of surface
+    float observed = 0.0f;        ///< the same before cloth lowers it
     bool skin = true; ///< a point of the surface, not of an outline, empty space or the floor
 };
 

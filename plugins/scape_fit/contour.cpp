@@ -43,7 +43,7 @@ ContourPairing::ContourPairing(const FitLevel& level) : level_(level) {
 }
 
 void ContourPairing::pair(const PosedLevel& posed, const Vec3f& eye, std::span<const Vec3f> edges,
-                          float reach_m, float scale_m, float weight, float inside_weight,
+                          float reach_m, float scale_m, float weight, const ClothGaps* cloth,
                           std::vector<VertexPair>& out) {
     // Points of the model where its normals turn away from the eye.
     std::vector<Vec3f> directions, points, normals;
@@ -85,7 +85,7 @@ void ContourPairing::pair(const PosedLevel& posed, const Vec3f& eye, std::span<c
         sum.place /= sum.weight;
         sum.normal.normalize();
         sum.skin = false;
-        if (level_.clothed[v] != 0 && sum.distance < 0.0f) sum.weight *= inside_weight;
+        if (cloth != nullptr) sum.weight *= cloth->weight(v, sum.distance);
         out.push_back(sum);
     }
 }

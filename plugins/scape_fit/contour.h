@@ -4,6 +4,7 @@
 
 #include "core/row_loop.h"
 #include "scape_fit/association_types.h"
+#include "scape_fit/cloth_gaps.h"
 #include "scape_fit/fit_model.h"
 #include "scape_fit/observation.h"
 
@@ -16,14 +17,14 @@ namespace toile::scape_fit {
 
 /// The model's own outline as `eye` sees it, paired with directions `edges` (corrected), summed up
 /// at vertices. Pairs farther than `reach_m` are left out; `weight` is the area (m^2) that one
-/// direction counts as; times `inside_weight` where the model lies inside the outline on parts that
-/// clothes may cover.
+/// direction counts as; `cloth` (or none) lowers it where the model lies inside the outline of a
+/// dressed person.
 class ContourPairing {
   public:
     explicit ContourPairing(const FitLevel& level);
 
     void pair(const PosedLevel& posed, const Vec3f& eye, std::span<const Vec3f> edges,
-              float reach_m, float scale_m, float weight, float inside_weight,
+              float reach_m, float scale_m, float weight, const ClothGaps* cloth,
               std::vector<VertexPair>& out);
 
   private:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace toile::scape_fit {
 
@@ -15,8 +16,7 @@ struct Fitter::Stage {
     std::array<float, 2> scale_m{};
     float empty_weight = 0.3f;
     float outline_weight = 0.0f;
-    float outside_weight = 1.0f;
-    float cloth_margin_m = 0.0f;
+    bool dressed = false;
     double shape_weight = 0.0; ///< instead of the options'; 0: theirs
     bool along_rays = false;
     bool fix_shape = false;
@@ -29,6 +29,7 @@ namespace {
 
 constexpr std::size_t kStartPoints = 400;
 constexpr std::size_t kStarts = 6;
+constexpr double kBetterArm = 0.97; // of the points' distance: else the arm stays
 constexpr std::size_t kCoarsePoints = 3000;
 constexpr std::size_t kMediumPoints = 16000;
 constexpr float kOutlinePixel = 3e-4f; // m^2 that a pixel of the outline counts as
@@ -105,11 +106,16 @@ void stand_on(const FitLevel& level, const PosedLevel& posed, const geometry::Pl
 
 void Fitter::refine(std::span<const Observation> observations, const Stage& stage,
                     const FitOptions& options, const RowLoop& rows, FitResult& result) {
+    std::vector<ObservedPoints> observed(observations.begin(), observations.end());
+    refine(observed, stage, options, rows, result);
+}
+
+void Fitter::refine(std::span<ObservedPoints> observed, const Stage& stage,
+                    const FitOptions& options, const RowLoop& rows, FitResult& result) {
     const FitLevel& level = model_.level(stage.level);
     FitState& state = result.state;
-    std::vector<ObservedPoints> observed;
-    for (const Observation& one : observations)
-        observed.emplace_back(one);
+    std::optional<ClothGaps> cloth;
+    if (stage.dressed) cloth.emplace(level, options.cloth);
     std::vector<PosedLevel> posed(state.poses.size());
     std::vector<Associator> associators;
     for (std::size_t f = 0; f < state.poses.size(); ++f)
@@ -126,8 +132,7 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
         pairing.along_rays = stage.along_rays;
         pairing.empty_weight = stage.empty_weight;
         pairing.outline_weight = stage.outline_weight;
-        pairing.outside_weight = stage.outside_weight;
-        pairing.cloth_margin_m = stage.cloth_margin_m;
+        pairing.cloth = cloth ? &*cloth : nullptr;
         for (std::size_t f = 0; f < posed.size(); ++f) {
             pose_level(model_, level, state.shape, state.poses[f], posed[f]);
             associators[f].set_surface(posed[f]);
@@ -140,6 +145,7 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
             associators[seen.instant].associate(points, pairing, rows, associations[i]);
             views.push_back({seen.instant, seen.camera, points.eye, &associations[i]});
         }
+        if (cloth) cloth->learn(associations);
         if (options.floor) {
             for (std::size_t f = 0; f < posed.size(); ++f)
                 stand_on(level, posed[f], *options.floor, contacts[f]);
@@ -175,108 +181,167 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
     result.paired_share = paired / std::max(observed_area, 1e-9);
 }
 
-/// What is seen is cloth: the body lies within it, and where cloth is tight in one of the instants
-/// it lies on it (P5 4.3 without its bias: one shape for all instants, one-sided).
-void Fitter::find_beneath(std::span<const Observation> observations, bool depth,
-                          const FitOptions& options, const RowLoop& rows, FitResult& result) {
-    Stage beneath{1, 14, {0.12f, 0.08f}, {0.08f, 0.05f}};
-    beneath.along_rays = depth;
-    beneath.outline_weight = depth ? kOutlinePixel : 0.0f;
-    beneath.outside_weight = options.cloth_weight;
-    beneath.cloth_margin_m = options.cloth_margin_m;
-    beneath.shape_weight = options.dressed_shape_weight;
-    if (depth) beneath.empty_weight = 0.0f; // as in the fine stage
-    beneath.from = 0.6, beneath.to = 1.0;
-    refine(observations, beneath, options, rows, result);
-}
-
-FitResult Fitter::fit(std::span<const Observation> observations, const FitOptions& options,
-                      const RowLoop& rows) {
-    std::size_t instants = 0, cameras = 0;
-    bool depth = false;
+Fitter::Scope Fitter::scope_of(std::span<const Observation> observations) {
+    Scope out;
     for (const Observation& one : observations) {
         if (one.points.empty()) throw Error("an observation without points");
-        instants = std::max(instants, one.instant + 1);
-        if (one.eye) cameras = std::max(cameras, one.camera + 1);
-        depth = depth || one.eye.has_value();
+        out.instants = std::max(out.instants, one.instant + 1);
+        if (one.eye) out.cameras = std::max(out.cameras, one.camera + 1);
+        out.depth = out.depth || one.eye.has_value();
     }
-    if (instants == 0) throw Error("nothing was observed");
+    if (out.instants == 0) throw Error("nothing was observed");
+    return out;
+}
 
-    // Start each instant on its own, from the best bodies of the library.
-    const auto coarse_points = fewer(observations, kCoarsePoints * instants);
+body::Sex Fitter::likelier_sex(const ShapeVector& shape) const {
+    return solver_.unlikeliness(shape, body::kSexes[0]) <
+                   solver_.unlikeliness(shape, body::kSexes[1])
+               ? body::kSexes[0]
+               : body::kSexes[1];
+}
+
+/// The best of the library's bodies after some steps each. `seen`: of one instant; `points`: how
+/// many of them choose among the library.
+FitResult Fitter::start_instant(std::span<const Observation> seen, std::size_t points,
+                                const FitResult& before, const FitOptions& options,
+                                const RowLoop& rows) {
+    std::vector<Vec3f> few;
+    for (const Observation& one : seen) {
+        const std::size_t step = std::max<std::size_t>(1, one.points.size() * seen.size() / points);
+        for (std::size_t i = 0; i < one.points.size(); i += step)
+            few.push_back(one.points[i]);
+    }
+    std::vector<ObservedPoints> observed(seen.begin(), seen.end());
     const std::size_t coarse = model_.level_count() - 1;
+    FitOptions loose = options;
+    loose.camera = {};
+    FitResult best;
+    best.rms_m = std::numeric_limits<double>::max();
+    for (const Start& start : library_.find(few, options.ups, kStarts, rows)) {
+        FitResult tried;
+        tried.state.shape.coefficients =
+            before.state.poses.empty() ? start.shape : before.state.shape.coefficients;
+        tried.state.poses = {start.pose};
+        tried.state.cameras.resize(before.state.cameras.size());
+        Stage first{coarse, 3, {0.3f, 0.2f}, {0.15f, 0.10f}};
+        first.fix_shape = true;
+        refine(observed, first, loose, rows, tried);
+        const Stage second{coarse, 12, {0.2f, 0.08f}, {0.10f, 0.04f}};
+        refine(observed, second, loose, rows, tried);
+        if (tried.rms_m < best.rms_m) best = std::move(tried);
+    }
+    retry_arms(observed, loose, rows, best);
+    return best;
+}
+
+/// The library's people hold both arms alike: each arm is tried in all of its ways.
+void Fitter::retry_arms(std::span<ObservedPoints> observed, const FitOptions& options,
+                        const RowLoop& rows, FitResult& best) {
+    Stage arm{model_.level_count() - 1, 4, {0.15f, 0.08f}, {0.08f, 0.04f}};
+    arm.fix_shape = true;
+    for (const bool left : {true, false}) {
+        const body::Pose held = best.state.poses[0];
+        for (std::size_t way = 0; way < StartLibrary::arm_count(); ++way) {
+            FitResult tried = best;
+            tried.state.poses[0] = library_.with_arm(held, left, way);
+            refine(observed, arm, options, rows, tried);
+            if (tried.rms_m < kBetterArm * best.rms_m) best = std::move(tried);
+        }
+    }
+}
+
+/// Each instant on its own; the shape is the first one's.
+FitResult Fitter::start(std::span<const Observation> observations, const Scope& scope,
+                        const FitOptions& options, const RowLoop& rows) {
+    const auto coarse_points = fewer(observations, kCoarsePoints * scope.instants);
     FitResult result;
-    for (std::size_t f = 0; f < instants; ++f) {
+    result.state.cameras.resize(scope.cameras);
+    for (std::size_t f = 0; f < scope.instants; ++f) {
         std::vector<Observation> of_instant;
-        std::vector<Vec3f> points;
         for (const Observation& one : coarse_points) {
             if (one.instant != f) continue;
             of_instant.push_back(one);
             of_instant.back().instant = 0;
-            const std::size_t step = std::max<std::size_t>(
-                1, one.points.size() * observations.size() / (kStartPoints * instants));
-            for (std::size_t i = 0; i < one.points.size(); i += step)
-                points.push_back(one.points[i]);
         }
-        FitResult best;
-        best.rms_m = 1e9;
-        for (const Start& start : library_.find(points, options.ups, kStarts, rows)) {
-            FitResult tried;
-            tried.state.shape.coefficients = f == 0 ? start.shape : result.state.shape.coefficients;
-            tried.state.poses = {start.pose};
-            tried.state.cameras.resize(cameras);
-            FitOptions loose = options;
-            loose.camera = {};
-            Stage first{coarse, 3, {0.3f, 0.2f}, {0.15f, 0.10f}};
-            first.fix_shape = true;
-            refine(of_instant, first, loose, rows, tried);
-            const Stage second{coarse, 12, {0.2f, 0.08f}, {0.10f, 0.04f}};
-            refine(of_instant, second, loose, rows, tried);
-            if (tried.rms_m < best.rms_m) best = std::move(tried);
-        }
+        FitResult best = start_instant(of_instant, kStartPoints, result, options, rows);
         if (f == 0)
-            result = best;
+            result = std::move(best);
         else
             result.state.poses.push_back(best.state.poses.front());
     }
-    result.sex = options.sex.value_or(
-        solver_.unlikeliness(result.state.shape.coefficients, body::kSexes[0]) <
-                solver_.unlikeliness(result.state.shape.coefficients, body::kSexes[1])
-            ? body::kSexes[0]
-            : body::kSexes[1]);
-    // All together, finer and finer.
-    const auto medium_points = fewer(observations, kMediumPoints * instants);
+    return result;
+}
+
+/// All instants and cameras, at the middle level. Cameras are believed until the pose is right:
+/// else they would take up its errors.
+void Fitter::find_together(std::span<const Observation> observations, const Scope& scope,
+                           const FitOptions& options, const RowLoop& rows, FitResult& result) {
+    const auto points = fewer(observations, kMediumPoints * scope.instants);
+    std::vector<ObservedPoints> observed(points.begin(), points.end());
     Stage medium{1, 10, {0.10f, 0.06f}, {0.05f, 0.03f}};
-    medium.along_rays = depth;
+    medium.along_rays = scope.depth;
     medium.outline_weight = kOutlinePixel;
     medium.from = 0.4, medium.to = 0.6;
-    // Cameras are believed until the pose is right: else they would take up its errors.
     FitOptions fixed = options;
     fixed.camera = {};
-    refine(medium_points, medium, fixed, rows, result);
-    if (options.camera.turn_rad > 0.0) {
-        medium.reach_m[0] = medium.reach_m[1], medium.scale_m[0] = medium.scale_m[1];
-        medium.from = 0.5;
-        medium.empty_weight = 0.0f;
-        refine(medium_points, medium, options, rows, result);
-    }
-    if (options.dressed) {
-        find_beneath(observations, depth, options, rows, result);
-        return result;
-    }
+    refine(observed, medium, fixed, rows, result);
+    if (options.camera.turn_rad <= 0.0) return;
+    medium.reach_m[0] = medium.reach_m[1], medium.scale_m[0] = medium.scale_m[1];
+    medium.from = 0.5;
+    medium.empty_weight = 0.0f;
+    refine(observed, medium, options, rows, result);
+}
+
+void Fitter::find_detail(std::span<const Observation> observations, const Scope& scope,
+                         const FitOptions& options, const RowLoop& rows, FitResult& result) {
+    std::vector<ObservedPoints> observed(observations.begin(), observations.end());
+    const bool depth = scope.depth;
     Stage fine{0, 8, {0.06f, depth ? 0.06f : 0.03f}, {0.03f, depth ? 0.03f : 0.01f}};
     fine.along_rays = depth;
     fine.outline_weight = kOutlinePixel;
     if (depth) fine.empty_weight = 0.0f; // outlines say it without bias
     fine.from = 0.6, fine.to = 1.0;
     fine.free_form = options.use_free_form;
-    refine(observations, fine, options, rows, result);
-    if (options.use_free_form) {
-        Stage last = fine;
-        last.rounds = 3;
-        last.reach_m[0] = fine.reach_m[1], last.scale_m[0] = fine.scale_m[1];
-        refine(observations, last, options, rows, result);
-    }
+    refine(observed, fine, options, rows, result);
+    if (!options.use_free_form) return;
+    fine.rounds = 3;
+    fine.reach_m[0] = fine.reach_m[1], fine.scale_m[0] = fine.scale_m[1];
+    refine(observed, fine, options, rows, result);
+}
+
+/// What is seen is cloth: the body lies within it, and where cloth is tight in one of the instants
+/// it lies on it; one shape for all instants.
+void Fitter::find_beneath(std::span<const Observation> observations, const Scope& scope,
+                          const FitOptions& options, const RowLoop& rows, FitResult& result) {
+    const auto points = fewer(observations, kMediumPoints * scope.instants);
+    std::vector<ObservedPoints> observed(points.begin(), points.end());
+    Stage beneath{1, 14, {0.12f, 0.10f}, {0.10f, 0.08f}};
+    beneath.along_rays = scope.depth;
+    beneath.outline_weight = scope.depth ? kOutlinePixel : 0.0f;
+    beneath.dressed = true;
+    beneath.shape_weight = options.dressed_shape_weight;
+    if (scope.depth) beneath.empty_weight = 0.0f; // as in the fine stage
+    beneath.from = 0.6, beneath.to = 0.9;
+    refine(observed, beneath, options, rows, result);
+    if (!options.use_free_form) return;
+    beneath.level = 0;
+    beneath.rounds = 3;
+    beneath.reach_m[0] = beneath.reach_m[1], beneath.scale_m[0] = beneath.scale_m[1];
+    beneath.from = 0.9, beneath.to = 1.0;
+    beneath.free_form = true;
+    refine(observed, beneath, options, rows, result);
+}
+
+FitResult Fitter::fit(std::span<const Observation> observations, const FitOptions& options,
+                      const RowLoop& rows) {
+    const Scope scope = scope_of(observations);
+    FitResult result = start(observations, scope, options, rows);
+    result.sex = options.sex.value_or(likelier_sex(result.state.shape.coefficients));
+    find_together(observations, scope, options, rows, result);
+    if (options.dressed)
+        find_beneath(observations, scope, options, rows, result);
+    else
+        find_detail(observations, scope, options, rows, result);
     return result;
 }
 

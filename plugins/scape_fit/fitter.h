@@ -16,8 +16,7 @@ struct FitOptions {
     CameraTrust camera;                   ///< how far cameras may be corrected
     std::optional<geometry::Plane> floor; ///< feet that are near it stand on it
     bool dressed = false;                 ///< cloth may lie between skin and points
-    float cloth_weight = 0.03f;           ///< of points outside the body against those inside it
-    float cloth_margin_m = 0.002f;        ///< that count in full nevertheless
+    ClothGapOptions cloth;                ///< of dressed people
     double dressed_shape_weight = 0.05;   ///< of the prior beneath clothes
     bool use_free_form = true;            ///< move onto detail that the components cannot show
     FreeFormOptions free_form;
@@ -49,11 +48,31 @@ class Fitter {
 
   private:
     struct Stage;
+    /// What is fitted: how many instants and cameras, and whether cameras or a scanner saw it.
+    struct Scope {
+        std::size_t instants = 0, cameras = 0;
+        bool depth = false;
+    };
+    [[nodiscard]] static Scope scope_of(std::span<const Observation> observations);
+    void refine(std::span<ObservedPoints> observed, const Stage& stage, const FitOptions& options,
+                const RowLoop& rows, FitResult& result);
     void refine(std::span<const Observation> observations, const Stage& stage,
                 const FitOptions& options, const RowLoop& rows, FitResult& result);
 
-    void find_beneath(std::span<const Observation> observations, bool depth,
+    [[nodiscard]] FitResult start(std::span<const Observation> observations, const Scope& scope,
+                                  const FitOptions& options, const RowLoop& rows);
+    [[nodiscard]] FitResult start_instant(std::span<const Observation> seen, std::size_t points,
+                                          const FitResult& before, const FitOptions& options,
+                                          const RowLoop& rows);
+    void find_together(std::span<const Observation> observations, const Scope& scope,
+                       const FitOptions& options, const RowLoop& rows, FitResult& result);
+    void find_detail(std::span<const Observation> observations, const Scope& scope,
+                     const FitOptions& options, const RowLoop& rows, FitResult& result);
+    void find_beneath(std::span<const Observation> observations, const Scope& scope,
                       const FitOptions& options, const RowLoop& rows, FitResult& result);
+    void retry_arms(std::span<ObservedPoints> observed, const FitOptions& options,
+                    const RowLoop& rows, FitResult& best);
+    [[nodiscard]] body::Sex likelier_sex(const ShapeVector& shape) const;
 
     const FitModel& model_;
     StartLibrary library_;

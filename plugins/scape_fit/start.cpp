@@ -32,6 +32,12 @@ constexpr std::array<ArmPose, 7> kArms{{
     {0.0f, -8.0f, -15.0f, 85.0f, -50.0f}, // on the hips
     {10.0f, 45.0f, 0.0f, 90.0f, -60.0f},  // out, forearms up
 }};
+/// Further ways, of one arm only.
+constexpr std::array<ArmPose, 3> kSingleArms{{
+    {0.0f, -30.0f, 0.0f, 70.0f, 0.0f},   // hanging, forearm forward
+    {0.0f, -20.0f, -35.0f, 50.0f, 0.0f}, // swung back
+    {0.0f, 10.0f, 90.0f, 80.0f, 0.0f},   // before the chest
+}};
 constexpr std::array<float, 2> kLegs{0.0f, 12.0f}; // degrees apart, more than at rest
 
 body::Pose library_pose(const body::Skeleton& skeleton, const ArmPose& arm, float legs) {
@@ -91,6 +97,11 @@ bool alike(const Start& a, const Start& b) {
 } // namespace
 
 StartLibrary::StartLibrary(const FitModel& model) {
+    const body::Skeleton& usual = model.space().model().skeleton;
+    for (const ArmPose& arm : kArms)
+        arms_.push_back(library_pose(usual, arm, 0.0f));
+    for (const ArmPose& arm : kSingleArms)
+        arms_.push_back(library_pose(usual, arm, 0.0f));
     const FitLevel& level = model.level(model.level_count() - 1);
     PosedLevel posed;
     for (const body::Sex sex : body::kSexes)
@@ -115,6 +126,21 @@ StartLibrary::StartLibrary(const FitModel& model) {
                     entries_.push_back(std::move(entry));
                 }
         }
+}
+
+std::size_t StartLibrary::arm_count() noexcept {
+    return kArms.size() + kSingleArms.size();
+}
+
+body::Pose StartLibrary::with_arm(const body::Pose& pose, bool left, std::size_t way) const {
+    body::Pose out = pose;
+    for (Joint joint :
+         {Joint::left_shoulder, Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_hand}) {
+        if (!left) joint = body::opposite_joint(joint);
+        const auto j = static_cast<std::size_t>(joint);
+        out.rotations[j] = arms_[way].rotations[j];
+    }
+    return out;
 }
 
 std::vector<Start> StartLibrary::find(std::span<const Vec3f> points, std::span<const Vec3f> ups,

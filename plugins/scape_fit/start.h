@@ -26,6 +26,10 @@ class StartLibrary {
     [[nodiscard]] std::vector<Start> find(std::span<const Vec3f> points, std::span<const Vec3f> ups,
                                           std::size_t count, const RowLoop& rows) const;
 
+    /// Ways to hold an arm, and a pose with one of its arms held so.
+    [[nodiscard]] static std::size_t arm_count() noexcept;
+    [[nodiscard]] body::Pose with_arm(const body::Pose& pose, bool left, std::size_t way) const;
+
   private:
     struct Entry {
         ShapeVector shape;
@@ -35,6 +39,7 @@ class StartLibrary {
         Vec3f middle;    ///< mean of its points
     };
     std::vector<Entry> entries_;
+    std::vector<body::Pose> arms_; ///< a pose for each way to hold the arms
 };
 
 } // namespace toile::scape_fit

@@ -4,19 +4,15 @@
 //         [--pose FILE]... [--count N] [--json FILE]
 #include "body/measurer.h"
 #include "body/test_person.h"
-#include "core/parallel.h"
+#include "evaluation/simulated_views.h"
 #include "geometry/nearest_surface.h"
 #include "scape_fit/fitter.h"
-#include "scape_fit/person_finder.h"
-#include "simulated_sensor/simulator.h"
 
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 namespace {
 
@@ -24,9 +20,8 @@ namespace fs = std::filesystem;
 namespace sensor = toile::simulated_sensor;
 namespace fit = toile::scape_fit;
 namespace body = toile::body;
-using toile::Quatf;
-using toile::Vec3d;
 using toile::Vec3f;
+using namespace toile::evaluation;
 
 struct Settings {
     fs::path model, people;
@@ -44,9 +39,8 @@ struct Settings {
 
 /// Four sides at 2.4 m, or the front alone; landscape pictures.
 sensor::Scenario scenario_of(const Settings& settings, const fs::path& person, std::uint64_t seed) {
-    sensor::Scenario out;
+    sensor::Scenario out = empty_room();
     out.seed = seed;
-    out.color = false;
     out.frames = static_cast<std::uint32_t>(std::max<std::size_t>(1, settings.poses.size()));
     out.frames_per_second = 1.0;
     sensor::PersonSettings who;
@@ -56,41 +50,8 @@ sensor::Scenario scenario_of(const Settings& settings, const fs::path& person, s
     who.hold_s = 1.0;
     who.change_s = 1e-3;
     out.people.push_back(who);
-    for (int i = 0; i < 4; ++i) { // a room of 7 m
-        sensor::WallSettings wall;
-        wall.turn = 0.5 * std::numbers::pi * i;
-        wall.position = Quatf(Eigen::AngleAxisf(static_cast<float>(wall.turn), Vec3f::UnitY())) *
-                        Vec3f(0.0f, 0.0f, -3.5f);
-        wall.width_m = 7.0;
-        out.scene.walls.push_back(wall);
-    }
-    for (int i = 0; i < settings.views; ++i) {
-        sensor::CameraSettings camera = sensor::camera_of(sensor::CameraModel::kinect_v1);
-        const double angle = 0.5 * std::numbers::pi * i;
-        camera.name = "side" + std::to_string(i);
-        const Vec3d place(2.4 * std::sin(angle), 1.0, 2.4 * std::cos(angle));
-        camera.upright = true;
-        camera.world_from_camera = sensor::look_at(place, Vec3d(0.0, 0.9, 0.0));
-        camera.noise = settings.noise == "none"   ? sensor::no_noise()
-                       : settings.noise == "full" ? sensor::full_noise(camera.model)
-                                                  : sensor::usual_noise(camera.model);
-        out.cameras.push_back(camera);
-    }
+    add_cameras(out, settings.views, settings.noise);
     return out;
-}
-
-void rows_on_all_cores(std::uint32_t count, std::uint32_t grain,
-                       const std::function<void(std::uint32_t, std::uint32_t)>& work) {
-    const std::uint32_t ranges = (count + grain - 1) / grain;
-    toile::parallel_for(ranges, [&](std::size_t r) {
-        const auto begin = static_cast<std::uint32_t>(r) * grain;
-        work(begin, std::min(count, begin + grain));
-    });
-}
-
-double seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
 }
 
 /// Area-weighted mean distance from the truth's vertices that `keep` to another surface, mm.
@@ -174,21 +135,6 @@ void print(const Errors& errors) {
         std::printf("%-28s %5zu %8.2f %8.2f %8.2f %8.2f\n", name.c_str(), values.size(), sum / n,
                     absolute / n, std::sqrt(std::max(0.0, squares / n - sum * sum / n / n)), worst);
     }
-}
-
-fit::ObservedPerson observe(sensor::Simulator& simulator, std::size_t instant) {
-    std::vector<std::shared_ptr<fit::DepthView>> views;
-    for (std::size_t c = 0; c < simulator.camera_count(); ++c) {
-        simulator.see(c);
-        auto view = std::make_shared<fit::DepthView>();
-        view->camera = simulator.camera(c).intrinsics();
-        view->world_from_camera = simulator.camera(c).reported_pose();
-        view->depth.width = view->camera.width;
-        view->depth.height = view->camera.height;
-        view->depth = simulator.camera(c).depth();
-        views.push_back(view);
-    }
-    return fit::observe_person(views, instant);
 }
 
 void run(const Settings& settings) {

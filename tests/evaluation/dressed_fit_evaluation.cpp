@@ -1,0 +1,306 @@
+// Fits dressed people seen by four simulated cameras in five poses, and compares the measurements
+// with those of the body that wears the clothes.
+//
+//     dressed_fit_evaluation MODEL_FOLDER CASES_FOLDER [--period S] [--noise none|usual|full]
+//         [--count N] [--json FILE]
+//
+// A case is a folder with `body.json` (who wears it) and `cache` (toile tryon --cache); its poses
+// are reached every `--period` seconds.
+#include "assets/files.h"
+#include "body/body_file.h"
+#include "body/measurer.h"
+#include "body/survey.h"
+#include "core/error.h"
+#include "evaluation/simulated_views.h"
+#include "geometry/nearest_surface.h"
+#include "geometry/slice.h"
+#include "scape_fit/cloth_looseness.h"
+#include "scape_fit/fitter.h"
+
+#include <Eigen/Eigenvalues>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace sensor = toile::simulated_sensor;
+namespace fit = toile::scape_fit;
+namespace body = toile::body;
+using toile::Vec3f;
+using namespace toile::evaluation;
+
+constexpr std::uint32_t kPoses = 5;
+constexpr std::array kNames{"bust_girth",      "waist_girth",   "hip_girth",
+                            "thigh_girth",     "calf_girth",    "upper_arm_girth",
+                            "neck_girth",      "arm_length",    "neck_to_hip_distance",
+                            "inside_leg_length", "stature"};
+
+struct Settings {
+    fs::path model, cases, json;
+    double period = 1.1;
+    std::string noise = "usual";
+    std::string only;
+    std::size_t count = 1000;
+    bool compare = true;
+    fit::FitOptions fit;
+};
+
+sensor::Scenario scenario_of(const Settings& settings, std::uint64_t seed) {
+    sensor::Scenario out = empty_room();
+    out.seed = seed;
+    out.frames = kPoses;
+    out.frames_per_second = 1.0 / settings.period;
+    add_cameras(out, 4, settings.noise);
+    return out;
+}
+
+sensor::PersonSettings person_of(sensor::BodyKind kind, const fs::path& source) {
+    sensor::PersonSettings out;
+    out.kind = kind;
+    out.source = source;
+    return out;
+}
+
+/// What was seen of a case.
+struct Seen {
+    std::vector<fit::Observation> observations;
+    std::optional<toile::geometry::Plane> floor;
+    void add(sensor::Simulator& simulator, std::size_t instant) {
+        auto person = observe(simulator, instant);
+        if (!person.trouble.empty()) throw toile::Error("nobody was seen: " + person.trouble);
+        floor = person.floor;
+        for (auto& one : person.observations)
+            observations.push_back(std::move(one));
+    }
+};
+
+void save_ply(const toile::geometry::TriangleMesh& mesh, const fs::path& file) {
+    toile::assets::Primitive primitive;
+    primitive.positions = mesh.positions;
+    primitive.triangles = mesh.triangles;
+    toile::assets::Scene scene;
+    scene.meshes.push_back({"body", {std::move(primitive)}, {}});
+    toile::assets::Node node;
+    node.name = "body";
+    node.mesh = 0;
+    scene.nodes.push_back(node);
+    toile::assets::save_scene(scene, file);
+}
+
+/// The same body without its clothes, in the same poses.
+Seen see_undressed(const Settings& settings, std::uint64_t seed,
+                   const std::vector<toile::geometry::TriangleMesh>& surfaces) {
+    Seen out;
+    const fs::path file = fs::temp_directory_path() / "toile_undressed.ply";
+    for (std::size_t f = 0; f < surfaces.size(); ++f) {
+        save_ply(surfaces[f], file);
+        sensor::Scenario scenario = scenario_of(settings, seed + 100 * f);
+        scenario.people.push_back(person_of(sensor::BodyKind::mesh, file));
+        sensor::Simulator simulator(std::move(scenario), &rows_on_all_cores);
+        simulator.show(0);
+        out.add(simulator, f);
+    }
+    fs::remove(file);
+    return out;
+}
+
+/// Girth of all `surfaces` together in the plane of a tape (points of the body at rest) as this
+/// instant has it, the body's first: of the loops around the tape's middle.
+double girth_at(const body::Reading& tape, std::span<const Vec3f> rest,
+                const std::vector<toile::geometry::TriangleMesh>& surfaces) {
+    const auto& posed = surfaces.front().positions;
+    std::vector<Vec3f> places;
+    for (const auto& loop : tape.tapes)
+        for (const Vec3f& p : loop.points) {
+            std::size_t best = 0;
+            for (std::size_t v = 1; v < rest.size(); ++v)
+                if ((rest[v] - p).squaredNorm() < (rest[best] - p).squaredNorm()) best = v;
+            places.push_back(posed[best]);
+        }
+    Vec3f middle = Vec3f::Zero();
+    for (const Vec3f& p : places)
+        middle += p / static_cast<float>(places.size());
+    toile::Mat3f spread = toile::Mat3f::Zero();
+    float radius = 0.0f;
+    for (const Vec3f& p : places) {
+        spread += (p - middle) * (p - middle).transpose();
+        radius = std::max(radius, (p - middle).norm());
+    }
+    const Eigen::SelfAdjointEigenSolver<toile::Mat3f> axes(spread);
+    const auto plane = toile::geometry::Plane::through(middle, axes.eigenvectors().col(0));
+    std::vector<Vec3f> points;
+    for (const auto& surface : surfaces)
+        for (const auto& loop :
+             toile::geometry::slice(surface.positions, surface.triangles, plane)) {
+            Vec3f centre = Vec3f::Zero();
+            for (const Vec3f& p : loop.points)
+                centre += p / static_cast<float>(loop.points.size());
+            if ((centre - middle).norm() > 0.5f * radius) continue;
+            points.insert(points.end(), loop.points.begin(), loop.points.end());
+        }
+    return points.empty() ? 0.0 : toile::geometry::hull_girth(points, plane);
+}
+
+const body::Measurement* find(const body::Measurements& all, std::string_view name) {
+    for (const body::Measurement& m : all)
+        if (m.name == name) return &m;
+    return nullptr;
+}
+
+struct Evaluation {
+    explicit Evaluation(const Settings& wanted)
+        : settings(wanted), model(settings.model), fitter(model), measurer(model.space().model()) {}
+
+    nlohmann::ordered_json errors_of(const fit::FitResult& result, const body::Measurements& truth) {
+        const auto rest = fit::rest_shape(model, result.state.shape);
+        const auto found = measurer.measure(rest.positions, rest.skeleton);
+        nlohmann::ordered_json out;
+        for (const char* name : kNames)
+            out[name] = 1000.0 * (find(found, name)->value_m - find(truth, name)->value_m);
+        return out;
+    }
+
+    /// Mean distance of the true skin from what was found at an instant.
+    double distance_mm(const toile::geometry::TriangleMesh& skin, const fit::FitResult& result,
+                       std::size_t instant) const {
+        fit::PosedLevel found;
+        fit::pose_level(model, model.level(0), result.state.shape, result.state.poses[instant],
+                        found);
+        const toile::geometry::NearestSurface surface(found.positions, model.level(0).triangles);
+        double sum = 0.0;
+        for (const Vec3f& p : skin.positions)
+            sum += static_cast<double>(surface.nearest(p).distance);
+        return 1000.0 * sum / static_cast<double>(skin.positions.size());
+    }
+
+    body::Reading reading_of(const body::BodyShape& rest, const std::string& name) const {
+        const auto figure = measurer.figure(rest.positions, rest.skeleton);
+        body::Survey survey(figure);
+        return body::measurement_definitions({&name, 1}).front()->read(survey);
+    }
+
+    nlohmann::ordered_json run(const fs::path& folder, std::uint64_t seed) {
+        const auto file = body::load_body_file(folder / "body.json");
+        const auto rest = body::shape_of(file, model.space());
+        const auto truth = measurer.measure(rest.positions, rest.skeleton);
+        sensor::Scenario scenario = scenario_of(settings, seed);
+        scenario.people.push_back(person_of(sensor::BodyKind::surfaces, folder / "cache"));
+        sensor::Simulator simulator(std::move(scenario), &rows_on_all_cores);
+        Seen seen;
+        std::vector<toile::geometry::TriangleMesh> bare;
+        nlohmann::ordered_json row;
+        row["id"] = folder.filename().string();
+        for (std::uint32_t f = 0; f < kPoses; ++f) {
+            simulator.show(f);
+            seen.add(simulator, f);
+            std::vector<toile::geometry::TriangleMesh> surfaces;
+            for (const auto& one : simulator.figures()[0]->surfaces()) {
+                toile::geometry::TriangleMesh mesh;
+                mesh.positions = one.positions;
+                mesh.triangles = one.surface.triangles;
+                if (one.role == body::SurfaceRole::body) {
+                    bare.push_back(mesh);
+                    surfaces.insert(surfaces.begin(), std::move(mesh));
+                } else {
+                    surfaces.push_back(std::move(mesh));
+                }
+            }
+            if (f != 0 || surfaces.front().positions.size() != rest.positions.size()) continue;
+            for (const char* name : {"bust_girth", "waist_girth", "hip_girth", "upper_arm_girth",
+                                     "thigh_girth"}) {
+                const auto tape = reading_of(rest, name);
+                const double skin = girth_at(tape, rest.positions, {surfaces.front()});
+                row["ease_mm"][name] =
+                    1000.0 * (girth_at(tape, rest.positions, surfaces) - skin);
+            }
+        }
+        fit::FitOptions options = settings.fit;
+        options.floor = seen.floor;
+        options.free_form = {0.004, 0.15, 1.5e8};
+        if (settings.noise == "full") options.camera = {0.0035, 0.005, 0.003};
+        options.dressed = true;
+        const double began = seconds();
+        const auto beneath = fitter.fit(seen.observations, options, &rows_on_all_cores);
+        row["seconds"] = seconds() - began;
+        row["errors_mm"]["dressed"] = errors_of(beneath, truth);
+        for (std::size_t f = 0; f < bare.size(); ++f)
+            row["surface_mm"].push_back(distance_mm(bare[f], beneath, f));
+        for (const auto& one : fit::measure_looseness(model, measurer, beneath.state,
+                                                      seen.observations, &rows_on_all_cores))
+            row["looseness"][one.girth] = {{"looseness", one.looseness},
+                                           {"ease_mm", 1000.0 * one.ease_m}};
+        if (settings.compare) {
+            options.dressed = false;
+            row["errors_mm"]["without_mitigation"] =
+                errors_of(fitter.fit(seen.observations, options, &rows_on_all_cores), truth);
+            const Seen naked = see_undressed(settings, seed, bare);
+            row["errors_mm"]["undressed"] =
+                errors_of(fitter.fit(naked.observations, options, &rows_on_all_cores), truth);
+        }
+        return row;
+    }
+
+    const Settings& settings;
+    fit::FitModel model;
+    fit::Fitter fitter;
+    body::Measurer measurer;
+};
+
+void run(const Settings& settings) {
+    std::vector<fs::path> cases;
+    for (const auto& entry : fs::directory_iterator(settings.cases))
+        if (fs::exists(entry.path() / "body.json") &&
+            entry.path().filename().string().find(settings.only) != std::string::npos)
+            cases.push_back(entry.path());
+    std::sort(cases.begin(), cases.end());
+    Evaluation evaluation(settings);
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < std::min(cases.size(), settings.count); ++i) {
+        rows.push_back(evaluation.run(cases[i], 31 + i));
+        std::printf("%s\n", rows.back().dump().c_str());
+        std::fflush(stdout);
+    }
+    if (!settings.json.empty()) std::ofstream(settings.json) << rows.dump(1) << "\n";
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Settings settings;
+    if (argc < 3) return std::fputs("usage: see the head of the source\n", stderr), 2;
+    settings.model = argv[1];
+    settings.cases = argv[2];
+    for (int i = 3; i < argc; ++i) {
+        const std::string key = argv[i];
+        const auto value = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
+        if (key == "--period")
+            settings.period = std::stod(value());
+        else if (key == "--noise")
+            settings.noise = value();
+        else if (key == "--count")
+            settings.count = std::stoul(value());
+        else if (key == "--only")
+            settings.only = value();
+        else if (key == "--json")
+            settings.json = value();
+        else if (key == "--dressed-only")
+            settings.compare = false;
+        else if (key == "--alike")
+            settings.fit.cloth.alike = std::stof(value());
+        else if (key == "--gap-noise")
+            settings.fit.cloth.noise_m = std::stof(value());
+        else if (key == "--weight")
+            settings.fit.dressed_shape_weight = std::stod(value());
+        else
+            return std::fprintf(stderr, "unknown option %s\n", key.c_str()), 2;
+    }
+    try {
+        run(settings);
+    } catch (const std::exception& e) {
+        return std::fprintf(stderr, "%s\n", e.what()), 1;
+    }
+    return 0;
+}
