@@ -152,6 +152,7 @@ void Fitter::refine(std::span<const Observation> observations, const Stage& stag
         priors.shape_weight = stage.shape_weight > 0.0 ? stage.shape_weight : options.shape_weight;
         priors.fix_shape = stage.fix_shape;
         priors.camera = options.camera;
+        priors.cameras = options.cameras;
         solver_.step(level, posed, views, priors, stage.damping, rows, state);
         ++result.rounds;
         if (options.progress(stage.from + (stage.to - stage.from) * (round + 1) / stage.rounds))
@@ -226,7 +227,7 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
             tried.state.poses = {start.pose};
             tried.state.cameras.resize(cameras);
             FitOptions loose = options;
-            loose.camera = {};
+            loose.camera = {}, loose.cameras.clear();
             Stage first{coarse, 3, {0.3f, 0.2f}, {0.15f, 0.10f}};
             first.fix_shape = true;
             refine(of_instant, first, loose, rows, tried);
@@ -252,14 +253,15 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
     medium.from = 0.4, medium.to = 0.6;
     // Cameras are believed until the pose is right: else they would take up its errors.
     FitOptions fixed = options;
-    fixed.camera = {};
+    fixed.camera = {}, fixed.cameras.clear();
     refine(medium_points, medium, fixed, rows, result);
-    if (options.camera.turn_rad > 0.0) {
+    if (options.camera.turn_rad > 0.0 || !options.cameras.empty()) {
         medium.reach_m[0] = medium.reach_m[1], medium.scale_m[0] = medium.scale_m[1];
         medium.from = 0.5;
         medium.empty_weight = 0.0f;
         refine(medium_points, medium, options, rows, result);
     }
+    if (options.rough) return result;
     if (options.dressed) {
         find_beneath(observations, depth, options, rows, result);
         return result;

@@ -135,13 +135,5 @@ TEST(DepthFit, PicturesWithoutReadingsAreRefused) {
     EXPECT_ERROR(session().fit({}, &serial_rows), "nothing was fed");
 }
 
-TEST(DepthFit, SeveralCamerasMustSayWhereTheyStand) {
-    auto cameras = four_sides();
-    cameras[2].world_from_camera.reset();
-    session().begin(cameras);
-    show(four_sides(), nullptr);
-    EXPECT_ERROR(session().fit({}, &serial_rows), "extrinsic.json");
-}
-
 } // namespace
 } // namespace toile::scape_fit
