@@ -114,8 +114,8 @@ std::vector<Alignment> unlike(std::span<const Alignment> all, std::size_t most) 
     std::vector<Alignment> out;
     for (const Alignment& one : all) {
         const bool known = std::any_of(out.begin(), out.end(), [&](const Alignment& other) {
-            return Eigen::AngleAxisd(other.place.linear().transpose() * one.place.linear()).angle() <
-                   kAlike;
+            return Eigen::AngleAxisd(other.place.linear().transpose() * one.place.linear())
+                       .angle() < kAlike;
         });
         if (!known && out.size() < most) out.push_back(one);
     }
@@ -152,8 +152,8 @@ Eigen::Isometry3d aligned(std::span<const Vec3f> from, std::span<const Vec3f> to
         a /= sum, b /= sum;
         Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero(); // of to with from
         for (std::size_t i = 0; i < from.size(); ++i)
-            covariance += robust[i] * (to[i].cast<double>() - b) *
-                          (from[i].cast<double>() - a).transpose();
+            covariance +=
+                robust[i] * (to[i].cast<double>() - b) * (from[i].cast<double>() - a).transpose();
         out.linear() = best_turn(covariance, freedom);
         out.translation() = b - out.linear() * a;
         if (freedom == Freedom::level) out.translation().y() = 0.0;

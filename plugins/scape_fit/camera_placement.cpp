@@ -13,25 +13,25 @@ namespace {
 
 using body::Joint;
 
-constexpr std::size_t kInstants = 4;      // looked at, spread over all
-constexpr int kMostWidth = 360;           // pixels of a picture that is looked at
-constexpr std::size_t kSeenPoints = 400;  // of a camera at an instant, to be aligned
-constexpr std::size_t kBodyLevel = 1;     // of the model: 3,000 vertices
-constexpr std::size_t kSeeds = 2;         // cameras whose body may be the one to begin with
-constexpr std::size_t kChoices = 3;       // places of the first camera around it
-constexpr int kRounds = 4;                // of placing and fitting
-constexpr double kAsGood = 1.5;           // times the best: placed in the same round
-constexpr double kAloneWeight = 0.1;      // of the shape's prior where one side is seen
+constexpr std::size_t kInstants = 4;     // looked at, spread over all
+constexpr int kMostWidth = 360;          // pixels of a picture that is looked at
+constexpr std::size_t kSeenPoints = 400; // of a camera at an instant, to be aligned
+constexpr std::size_t kBodyLevel = 1;    // of the model: 3,000 vertices
+constexpr std::size_t kSeeds = 2;        // cameras whose body may be the one to begin with
+constexpr std::size_t kChoices = 2;      // places of the first camera around it
+constexpr int kRounds = 4;               // of placing and fitting
+constexpr double kAsGood = 1.5;          // times the best: placed in the same round
+constexpr double kAloneWeight = 0.1;     // of the shape's prior where one side is seen
 // Distance of a camera's points from the body of all: metres, and this much more than the best
 // has that is fitted alone.
-constexpr double kMostDistance = 0.016, kMostShare = 1.5, kMostMore = 0.006;
+constexpr double kMostDistance = 0.018, kMostShare = 1.3, kMostMore = 0.0055;
 constexpr CameraTrust kFirst{0.10, 0.10, 0.0};
 constexpr CameraTrust kFixed{1e-5, 1e-5, 0.0};
 
 /// Cameras that stand firmly to each other, in an upright frame of their own.
 struct Unit {
     std::vector<std::size_t> cameras;
-    bool has_floor = false;              ///< at y = 0
+    bool has_floor = false;                     ///< at y = 0
     std::vector<Eigen::Isometry3d> from_camera; ///< unit_from_camera of each
     std::vector<Observation> observations;
     std::vector<SeenPoints> seen;
@@ -83,9 +83,8 @@ Observation moved(const Observation& from, const Eigen::Isometry3d& to_from) {
 /// Turned and lifted so that the floor is y = 0.
 Eigen::Isometry3d stood_on(const geometry::Plane& floor) {
     Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-    out.linear() =
-        Eigen::Quaterniond::FromTwoVectors(floor.normal.cast<double>(), Vec3d::UnitY())
-            .toRotationMatrix();
+    out.linear() = Eigen::Quaterniond::FromTwoVectors(floor.normal.cast<double>(), Vec3d::UnitY())
+                       .toRotationMatrix();
     out.translation().y() = -static_cast<double>(floor.offset);
     return out;
 }
@@ -116,8 +115,10 @@ double joint_weight(Joint joint) {
     case Joint::left_upper_arm:
     case Joint::right_upper_arm:
     case Joint::left_upper_leg:
-    case Joint::right_upper_leg: return 1.0;
-    default: return 0.3;
+    case Joint::right_upper_leg:
+        return 1.0;
+    default:
+        return 0.3;
     }
 }
 
@@ -138,9 +139,8 @@ class Placer {
 
   private:
     [[nodiscard]] std::string look(std::span<const std::vector<imaging::DepthImage>> instants);
-    [[nodiscard]] std::string
-    look_at(std::span<const std::vector<imaging::DepthImage>> instants, std::size_t instant,
-            std::vector<ObservedPerson>& out) const;
+    [[nodiscard]] std::string look_at(std::span<const std::vector<imaging::DepthImage>> instants,
+                                      std::size_t instant, std::vector<ObservedPerson>& out) const;
     void stand(Unit& unit, const std::optional<geometry::Plane>& floor);
     [[nodiscard]] FitOptions fit_options(bool floor);
     [[nodiscard]] std::vector<StandingBody> bodies_of(const FitResult& result) const;
@@ -148,9 +148,8 @@ class Placer {
     [[nodiscard]] Freedom freedom(const Unit& a, const Unit& b) const;
     [[nodiscard]] std::vector<Alignment> places_of(const Unit& seed, const Unit& unit,
                                                    std::span<const StandingBody> bodies) const;
-    [[nodiscard]] std::vector<StandingBody> fit_together(std::size_t seed,
-                                                         std::span<const std::uint8_t> with,
-                                                         Arrangement& arrangement);
+    [[nodiscard]] std::vector<StandingBody>
+    fit_together(std::size_t seed, std::span<const std::uint8_t> with, Arrangement& arrangement);
     [[nodiscard]] Arrangement arrange(std::size_t seed, std::size_t choice);
     [[nodiscard]] Placement placement(const Arrangement& arrangement) const;
 
@@ -283,8 +282,7 @@ std::vector<Alignment> Placer::places_of(const Unit& seed, const Unit& unit,
 }
 
 /// One body for some of the units, and these moved a little so that it explains them.
-std::vector<StandingBody> Placer::fit_together(std::size_t seed,
-                                               std::span<const std::uint8_t> with,
+std::vector<StandingBody> Placer::fit_together(std::size_t seed, std::span<const std::uint8_t> with,
                                                Arrangement& arrangement) {
     std::vector<Observation> observations;
     FitOptions options = fit_options(units_[seed].has_floor);
@@ -305,8 +303,9 @@ std::vector<StandingBody> Placer::fit_together(std::size_t seed,
         if (u != seed) {
             const CameraCorrection& found = result.state.cameras[units_[u].cameras[0]];
             const Vec3d eye = unit.place * units_[u].from_camera[0].translation();
-            unit.place = Eigen::Translation3d(eye + found.shift) * Eigen::Quaterniond(rotation_of(found.turn)) *
-                         Eigen::Translation3d(-eye) * unit.place;
+            unit.place = Eigen::Translation3d(eye + found.shift) *
+                         Eigen::Quaterniond(rotation_of(found.turn)) * Eigen::Translation3d(-eye) *
+                         unit.place;
         }
         unit.distance_m = distance(bodies, units_[u].seen, unit.place);
     }
@@ -365,7 +364,8 @@ Placement Placer::placement(const Arrangement& arrangement) const {
     for (std::size_t u = 0; u < units_.size(); ++u)
         for (std::size_t i = 0; i < units_[u].cameras.size(); ++i) {
             PlacedCamera& camera = out.cameras[units_[u].cameras[i]];
-            camera.world_from_camera = world * arrangement.units[u].place * units_[u].from_camera[i];
+            camera.world_from_camera =
+                world * arrangement.units[u].place * units_[u].from_camera[i];
             camera.alone_m = units_[u].alone_m;
             camera.together_m = arrangement.units[u].distance_m;
         }
@@ -386,8 +386,7 @@ Placement Placer::place(std::span<const std::vector<imaging::DepthImage>> instan
     });
     if (units_.front().cameras.size() > 1) seeds = {0};
     seeds.resize(std::min(seeds.size(), kSeeds));
-    const double most =
-        std::min(kMostDistance, kMostShare * units_[seeds[0]].alone_m + kMostMore);
+    const double most = std::min(kMostDistance, kMostShare * units_[seeds[0]].alone_m + kMostMore);
     Arrangement best;
     for (std::size_t choice = 0; choice < kChoices; ++choice)
         for (const std::size_t seed : seeds) {
