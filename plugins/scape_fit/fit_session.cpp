@@ -1,6 +1,7 @@
 #include "scape_fit/fit_session.h"
 
 #include "body/rotations.h"
+#include "scape_fit/cloth_looseness.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,9 @@ constexpr double kLeastSeen = 0.12;    // of the body's area: less says too litt
 constexpr double kFarthest = 30.0; // deviations a coefficient may have: overfitting takes a dozen
 // A stationary rig that was calibrated once: degrees, millimetres and depth scale that may be off.
 constexpr CameraTrust kCalibrated{0.0035, 0.005, 0.003};
-constexpr CameraTrust kLooselyPlaced{0.05, 0.05, 0.003};
+constexpr CameraTrust kLooselyPlaced{0.02, 0.03, 0.003}; // found from the person
+constexpr CameraTrust kWorld{1e-5, 1e-5, 0.003};         // the others are placed around it
+constexpr double kPlacingShare = 0.7;                    // of the time, where cameras are placed
 
 std::string percent(double share) {
     char text[32];
@@ -63,6 +66,8 @@ struct FitSession::Input {
     FitOptions options;
     nlohmann::ordered_json notes;
     bool depth = false;
+    std::vector<Eigen::Isometry3d> places; ///< of the cameras
+    std::optional<Placement> placement;    ///< where they were found, when some were lost
 };
 
 FitSession::FitSession(const FitModel& model)
@@ -109,22 +114,40 @@ FitSession::Input FitSession::scan_input() {
     return out;
 }
 
-FitSession::Input FitSession::depth_input() const {
-    Input out;
-    out.depth = true;
-    const bool calibrated =
-        std::all_of(cameras_.begin(), cameras_.end(),
-                    [](const FitCamera& camera) { return camera.world_from_camera.has_value(); });
-    if (!calibrated && cameras_.size() > 1)
-        throw NotFitted("several cameras are fitted together only when each says where it stands "
-                        "(extrinsic.json); fit one of them, or calibrate");
+/// Several cameras, and not all know where they stand: the person tells.
+void FitSession::place_lost_cameras(const SessionOptions& options, const RowLoop& rows,
+                                    Input& input) {
+    PlacementOptions placing;
+    placing.sex = options.sex;
+    placing.progress = [&](double share) { return options.progress(kPlacingShare * share); };
+    input.placement = place_cameras(model_, fitter_, cameras_, instants_, placing, rows);
+    if (!input.placement->trouble.empty())
+        throw NotFitted(input.placement->trouble +
+                        "; not every camera says where it stands: calibrate them (extrinsic.json), "
+                        "or let one person stand alone, head to foot in view of all, and feed "
+                        "pictures of the same instants");
+    input.options.camera = kLooselyPlaced;
+    bool known = false;
+    for (std::size_t c = 0; c < cameras_.size(); ++c) {
+        input.places[c] = input.placement->cameras[c].world_from_camera;
+        known = known || cameras_[c].world_from_camera;
+        input.options.cameras.push_back(cameras_[c].world_from_camera ? kCalibrated
+                                                                      : kLooselyPlaced);
+    }
+    if (!known) input.options.cameras[0] = kWorld;
+    input.options.progress = [progress = options.progress](double share) {
+        return progress(kPlacingShare + (1.0 - kPlacingShare) * share);
+    };
+}
+
+/// The person in all pictures, each camera in its place.
+void FitSession::add_pictures(Input& input) const {
     for (std::size_t f = 0; f < instants_.size(); ++f) {
         std::vector<std::shared_ptr<DepthView>> views;
         for (std::size_t c = 0; c < cameras_.size(); ++c) {
             auto view = std::make_shared<DepthView>();
             view->camera = cameras_[c].intrinsics;
-            view->world_from_camera =
-                cameras_[c].world_from_camera.value_or(Eigen::Isometry3d::Identity());
+            view->world_from_camera = input.places[c];
             view->depth = instants_[f][c];
             views.push_back(std::move(view));
         }
@@ -133,16 +156,27 @@ FitSession::Input FitSession::depth_input() const {
             throw NotFitted("instant " + std::to_string(f) + ": no person: " + person.trouble);
         if (person.observations.empty())
             throw NotFitted("instant " + std::to_string(f) + ": hardly a reading of the person");
-        if (f == 0) {
-            out.options.floor = person.floor;
-            if (person.floor && !calibrated) out.options.ups = {person.floor->normal};
-        }
+        if (f == 0) input.options.floor = person.floor;
         for (Observation& one : person.observations)
-            out.observations.push_back(std::move(one));
+            input.observations.push_back(std::move(one));
     }
+}
+
+FitSession::Input FitSession::depth_input(const SessionOptions& options, const RowLoop& rows) {
+    Input out;
+    out.depth = true;
+    bool calibrated = true;
+    for (const FitCamera& camera : cameras_) {
+        calibrated = calibrated && camera.world_from_camera;
+        out.places.push_back(camera.world_from_camera.value_or(Eigen::Isometry3d::Identity()));
+    }
+    out.options.progress = options.progress;
+    out.options.camera = cameras_.size() > 1 ? kCalibrated : CameraTrust{};
+    if (!calibrated && cameras_.size() > 1) place_lost_cameras(options, rows, out);
+    add_pictures(out);
+    if (out.options.floor && !calibrated) out.options.ups = {out.options.floor->normal};
     // From one side little is known of the depth of a body: the prior must tell.
     if (cameras_.size() == 1 && instants_.size() == 1) out.options.shape_weight = kOneSideWeight;
-    out.options.camera = cameras_.size() > 1 ? kCalibrated : CameraTrust{};
     out.options.free_form = {0.004, 0.15, 1.5e8};
     out.notes["cameras"] = cameras_.size();
     out.notes["instants"] = instants_.size();
@@ -172,10 +206,10 @@ void FitSession::judge(const Input& input) const {
 void FitSession::fit(const SessionOptions& options, const RowLoop& rows) {
     if (!scan_ && instants_.empty()) throw NotFitted("nothing was fed to be fitted");
     fitted_ = false;
-    Input input = scan_ ? scan_input() : depth_input();
+    Input input = scan_ ? scan_input() : depth_input(options, rows);
+    if (scan_) input.options.progress = options.progress;
     input.options.sex = options.sex;
     input.options.dressed = options.dressed;
-    input.options.progress = options.progress;
     result_ = fitter_.fit(input.observations, input.options, rows);
     std::vector<PosedLevel> posed;
     for (std::size_t f = 0; f < instant_count(); ++f)
@@ -192,14 +226,36 @@ void FitSession::fit(const SessionOptions& options, const RowLoop& rows) {
     report_["paired_share"] = result_.paired_share;
     report_["seen_share"] = result_.seen_share;
     report_["rounds"] = result_.rounds;
+    report_cameras(input);
+    if (options.dressed)
+        for (const Looseness& one : measure_looseness(model_, measurer_, result_.state,
+                                                      input.observations, rows))
+            report_["looseness"][one.girth] = {{"looseness", one.looseness},
+                                               {"ease_m", one.ease_m}};
+    fitted_ = true;
+}
+
+void FitSession::report_cameras(const Input& input) {
     for (std::size_t c = 0; c < result_.state.cameras.size(); ++c) {
         const CameraCorrection& camera = result_.state.cameras[c];
         report_["camera_corrections"].push_back(
             {{"turn_deg", camera.turn.norm() / static_cast<double>(body::kDegree)},
              {"shift_m", camera.shift.norm()},
              {"depth_scale", camera.scale}});
+        if (!input.placement) continue;
+        Eigen::Isometry3d place = input.places[c];
+        place.linear() = rotation_of(camera.turn) * place.linear();
+        place.translation() += camera.shift;
+        const Eigen::Map<const Eigen::Matrix<double, 16, 1>> numbers(place.matrix().data());
+        const CameraTrust& trust = input.options.cameras[c];
+        report_["found_cameras"].push_back(
+            {{"told", cameras_[c].world_from_camera.has_value()},
+             {"world_from_camera", std::vector<double>(numbers.begin(), numbers.end())},
+             {"believed_within_deg", trust.turn_rad / static_cast<double>(body::kDegree)},
+             {"believed_within_m", trust.shift_m},
+             {"distance_m", input.placement->cameras[c].together_m},
+             {"distance_alone_m", input.placement->cameras[c].alone_m}});
     }
-    fitted_ = true;
 }
 
 PosedLevel FitSession::surface(std::size_t instant) const {

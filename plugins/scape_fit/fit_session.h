@@ -3,18 +3,12 @@
 
 #include "body/measurer.h"
 #include "core/error.h"
-#include "scape_fit/fitter.h"
+#include "scape_fit/camera_placement.h"
 #include "scape_fit/scan_input.h"
 
 #include <nlohmann/json.hpp>
 
 namespace toile::scape_fit {
-
-/// One camera that feeds frames.
-struct FitCamera {
-    imaging::Intrinsics intrinsics;
-    std::optional<Eigen::Isometry3d> world_from_camera;
-};
 
 struct SessionOptions {
     std::optional<body::Sex> sex;
@@ -56,8 +50,11 @@ class FitSession {
   private:
     struct Input;
     [[nodiscard]] Input scan_input();
-    [[nodiscard]] Input depth_input() const;
+    [[nodiscard]] Input depth_input(const SessionOptions& options, const RowLoop& rows);
+    void place_lost_cameras(const SessionOptions& options, const RowLoop& rows, Input& input);
+    void add_pictures(Input& input) const;
     void judge(const Input& input) const;
+    void report_cameras(const Input& input);
 
     const FitModel& model_;
     Fitter fitter_;

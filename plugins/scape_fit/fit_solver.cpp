@@ -175,9 +175,10 @@ void FitSolver::add_camera_prior(const FitPriors& priors, const FitState& state)
     };
     for (std::size_t c = 0; c < state.cameras.size(); ++c) {
         const CameraCorrection& camera = state.cameras[c];
+        const CameraTrust& trust = c < priors.cameras.size() ? priors.cameras[c] : priors.camera;
         Eigen::Matrix<double, kCameraUnknowns, 1> weight, off;
-        weight << Vec3d::Constant(stiffness(priors.camera.turn_rad)),
-            Vec3d::Constant(stiffness(priors.camera.shift_m)), stiffness(priors.camera.scale);
+        weight << Vec3d::Constant(stiffness(trust.turn_rad)),
+            Vec3d::Constant(stiffness(trust.shift_m)), stiffness(trust.scale);
         off << camera.turn, camera.shift, camera.scale - 1.0;
         const int at = camera_at(state, c);
         normal_.diagonal().segment<kCameraUnknowns>(at) += weight;

@@ -31,6 +31,7 @@ struct FitPriors {
     double pose_weight = 1.0;
     bool fix_shape = false;
     CameraTrust camera;
+    std::vector<CameraTrust> cameras; ///< of each camera, before `camera`
 };
 
 /// What a pair says: all pairs within a patch of this size count as one measurement of this

@@ -158,6 +158,7 @@ void Fitter::refine(std::span<ObservedPoints> observed, const Stage& stage,
         priors.shape_weight = stage.shape_weight > 0.0 ? stage.shape_weight : options.shape_weight;
         priors.fix_shape = stage.fix_shape;
         priors.camera = options.camera;
+        priors.cameras = options.cameras;
         solver_.step(level, posed, views, priors, stage.damping, rows, state);
         ++result.rounds;
         if (options.progress(stage.from + (stage.to - stage.from) * (round + 1) / stage.rounds))
@@ -214,7 +215,7 @@ FitResult Fitter::start_instant(std::span<const Observation> seen, std::size_t p
     std::vector<ObservedPoints> observed(seen.begin(), seen.end());
     const std::size_t coarse = model_.level_count() - 1;
     FitOptions loose = options;
-    loose.camera = {};
+    loose.camera = {}, loose.cameras.clear();
     FitResult best;
     best.rms_m = std::numeric_limits<double>::max();
     for (const Start& start : library_.find(few, options.ups, kStarts, rows)) {
@@ -283,9 +284,9 @@ void Fitter::find_together(std::span<const Observation> observations, const Scop
     medium.outline_weight = kOutlinePixel;
     medium.from = 0.4, medium.to = 0.6;
     FitOptions fixed = options;
-    fixed.camera = {};
+    fixed.camera = {}, fixed.cameras.clear();
     refine(observed, medium, fixed, rows, result);
-    if (options.camera.turn_rad <= 0.0) return;
+    if (options.camera.turn_rad <= 0.0 && options.cameras.empty()) return;
     medium.reach_m[0] = medium.reach_m[1], medium.scale_m[0] = medium.scale_m[1];
     medium.from = 0.5;
     medium.empty_weight = 0.0f;
@@ -338,6 +339,7 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
     FitResult result = start(observations, scope, options, rows);
     result.sex = options.sex.value_or(likelier_sex(result.state.shape.coefficients));
     find_together(observations, scope, options, rows, result);
+    if (options.rough) return result;
     if (options.dressed)
         find_beneath(observations, scope, options, rows, result);
     else

@@ -14,10 +14,12 @@ struct FitOptions {
     std::optional<body::Sex> sex;         ///< none: the likelier one
     double shape_weight = 0.02;           ///< of the prior, see FitPriors
     CameraTrust camera;                   ///< how far cameras may be corrected
+    std::vector<CameraTrust> cameras;     ///< the same of each; none: all as `camera`
     std::optional<geometry::Plane> floor; ///< feet that are near it stand on it
     bool dressed = false;                 ///< cloth may lie between skin and points
     ClothGapOptions cloth;                ///< of dressed people
     double dressed_shape_weight = 0.05;   ///< of the prior beneath clothes
+    bool rough = false;                   ///< stop before the finest surface
     bool use_free_form = true;            ///< move onto detail that the components cannot show
     FreeFormOptions free_form;
     std::vector<Vec3f> ups{Vec3f::UnitY()}; ///< directions that may be up

@@ -20,6 +20,7 @@ constexpr float kFloorCut = 0.035f; // what counts as floor when the person is c
 constexpr float kCell = 0.05f;      // metres, of the grid that joins points into pieces
 constexpr float kWallShare = 0.10f; // of all points: a plane with so many may be a wall
 constexpr float kWallExtent = 1.3f; // metres that it must be wide and high
+constexpr float kWallFoot = 0.9f;   // metres that it must be wide in each third of its height
 constexpr float kOnWall = 0.05f;
 constexpr float kTallest = 2.4f, kShortest = 0.7f, kWidest = 2.5f;
 constexpr float kCompanion = 0.5f; // metres from the person's middle line, for small pieces
@@ -84,6 +85,29 @@ geometry::Plane refined(geometry::Plane plane, std::span<const Vec3f> points, fl
     return plane;
 }
 
+/// As a wall is: a person's back is neither, or has legs, when the arms are held out.
+bool wide_and_high(const geometry::Plane& plane, std::span<const Vec3f> points, const Vec3f& up) {
+    const Vec3f across = up.cross(plane.normal).normalized();
+    std::vector<Vec2f> on;
+    Vec2f low = Vec2f::Constant(1e9f), high = Vec2f::Constant(-1e9f);
+    for (const Vec3f& p : points)
+        if (std::abs(plane.normal.dot(p) - plane.offset) < kOnWall) {
+            on.emplace_back(across.dot(p), up.dot(p));
+            low = low.cwiseMin(on.back());
+            high = high.cwiseMax(on.back());
+        }
+    const Vec2f size = high - low;
+    if (size.minCoeff() < kWallExtent) return false;
+    std::array<Vec2f, 3> ends;
+    ends.fill(Vec2f(1e9f, -1e9f));
+    for (const Vec2f& p : on) {
+        const auto third = static_cast<std::size_t>(2.999f * (p.y() - low.y()) / size.y());
+        ends[third] = {std::min(ends[third].x(), p.x()), std::max(ends[third].y(), p.x())};
+    }
+    return std::all_of(ends.begin(), ends.end(),
+                       [](const Vec2f& third) { return third.y() - third.x() > kWallFoot; });
+}
+
 /// Takes points of large upright planes away.
 void remove_walls(std::span<const Vec3f> points, const Vec3f& up, std::vector<std::uint8_t>& keep) {
     for (int wall = 0; wall < 4; ++wall) {
@@ -109,16 +133,7 @@ void remove_walls(std::span<const Vec3f> points, const Vec3f& up, std::vector<st
             test, [&](const Vec3f& n) { return std::abs(n.dot(up)) < 0.2f; }, of_wall);
         if (!found || count_on(*found) < kWallShare * static_cast<double>(test.size())) return;
         const geometry::Plane plane = refined(*found, test, kOnWall);
-        // Wide and high: a person's back is neither.
-        const Vec3f across = up.cross(plane.normal).normalized();
-        Vec2f low = Vec2f::Constant(1e9f), high = Vec2f::Constant(-1e9f);
-        for (const Vec3f& p : test)
-            if (std::abs(plane.normal.dot(p) - plane.offset) < kOnWall) {
-                const Vec2f at(across.dot(p), up.dot(p));
-                low = low.cwiseMin(at);
-                high = high.cwiseMax(at);
-            }
-        if ((high - low).minCoeff() < kWallExtent) return;
+        if (!wide_and_high(plane, test, up)) return;
         for (std::size_t i = 0; i < points.size(); ++i)
             if (std::abs(plane.normal.dot(points[i]) - plane.offset) < kOnWall) keep[i] = 0;
     }
