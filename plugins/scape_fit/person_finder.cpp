@@ -85,7 +85,8 @@ geometry::Plane refined(geometry::Plane plane, std::span<const Vec3f> points, fl
     return plane;
 }
 
-/// As a wall is: a person's back is neither, or has legs, when the arms are held out.
+/// As a wall is, from top to bottom: what lies in one plane with a person's side or back may be
+/// wide somewhere.
 bool wide_and_high(const geometry::Plane& plane, std::span<const Vec3f> points, const Vec3f& up) {
     const Vec3f across = up.cross(plane.normal).normalized();
     std::vector<Vec2f> on;

@@ -200,8 +200,7 @@ TEST(CameraPlacement, NobodyIsRefusedNamingTheCamera) {
     const Somebody who;
     const std::vector<FitCamera> cameras{around(0.0f), around(90.0f)};
     session().begin(all_lost(cameras));
-    session().add_instant(
-        {depth_of(cameras[0], &who.surface), depth_of(cameras[1], nullptr)});
+    session().add_instant({depth_of(cameras[0], &who.surface), depth_of(cameras[1], nullptr)});
     EXPECT_ERROR(session().fit({}, &serial_rows), "camera 2, instant 0: no person");
 }
 
