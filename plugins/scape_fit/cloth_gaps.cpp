@@ -23,8 +23,8 @@ std::vector<std::uint16_t> spread_patches(std::span<const Vec3f> places, std::si
             nearest[v] = squared;
             out[v] = static_cast<std::uint16_t>(patch);
         }
-        seed = static_cast<std::size_t>(
-            std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+        seed = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) -
+                                        nearest.begin());
     }
     return out;
 }
@@ -34,7 +34,7 @@ std::vector<std::uint16_t> spread_patches(std::span<const Vec3f> places, std::si
 ClothGaps::ClothGaps(const FitLevel& level, const ClothGapOptions& options)
     : level_(level), options_(options),
       patch_of_(spread_patches(level.mean, std::min(kPatches, level.mean.size()))),
-      gaps_(kPatches, 0.0f), weights_(kPatches, 1.0f) {}
+      gaps_(kPatches, 0.0f), weights_(kPatches, options.unknown_weight) {}
 
 void ClothGaps::learn(std::span<const Association> associations) {
     std::vector<double> sums(kPatches, 0.0), areas(kPatches, 1e-12);
@@ -53,7 +53,7 @@ void ClothGaps::learn(std::span<const Association> associations) {
 }
 
 float ClothGaps::weight(std::uint32_t vertex, float distance) const {
-    if (level_.clothed[vertex] == 0 || distance >= -options_.noise_m) return 1.0f;
+    if (level_.clothed[vertex] == 0 || distance >= 0.0f) return 1.0f;
     return weights_[patch_of_[vertex]];
 }
 

@@ -11,8 +11,9 @@ namespace toile::scape_fit {
 struct ClothGapOptions {
     /// Gaps of one garment go together: as so many patches of cloth as say what one of independent
     /// gaps would.
-    float alike = 5.0f;
-    float noise_m = 0.0035f; ///< mean gap of bare skin
+    float alike = 20.0f;
+    float noise_m = 0.0045f;      ///< mean gap of bare skin
+    float unknown_weight = 0.03f; ///< of what is outside, before gaps are learned
 };
 
 /// A patch's mean gap over all instants tells how far its cloth can be believed: where it is tight

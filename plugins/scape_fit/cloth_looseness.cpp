@@ -65,8 +65,8 @@ std::vector<Looseness> measure_looseness(const FitModel& model, const body::Meas
     FreeForm field(model.level(0));
     std::vector<std::array<double, kGirths.size()>> cloth;
     for (std::size_t f = 0; f < instants; ++f)
-        cloth.push_back(girths_of(
-            model, measurer, cloth_shape(model, field, state, f, observations, rows)));
+        cloth.push_back(
+            girths_of(model, measurer, cloth_shape(model, field, state, f, observations, rows)));
     std::vector<Looseness> out;
     for (std::size_t i = 0; i < kGirths.size(); ++i) {
         double mean = 0.0, variance = 0.0;

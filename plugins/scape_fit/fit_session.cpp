@@ -228,8 +228,8 @@ void FitSession::fit(const SessionOptions& options, const RowLoop& rows) {
     report_["rounds"] = result_.rounds;
     report_cameras(input);
     if (options.dressed)
-        for (const Looseness& one : measure_looseness(model_, measurer_, result_.state,
-                                                      input.observations, rows))
+        for (const Looseness& one :
+             measure_looseness(model_, measurer_, result_.state, input.observations, rows))
             report_["looseness"][one.girth] = {{"looseness", one.looseness},
                                                {"ease_m", one.ease_m}};
     fitted_ = true;

@@ -17,6 +17,9 @@ struct Fitter::Stage {
     float empty_weight = 0.3f;
     float outline_weight = 0.0f;
     bool dressed = false;
+    /// Rounds after which the gaps of cloth are learned. Not after each: a body that they draw in
+    /// shows larger ones.
+    std::array<int, 2> learn{};
     double shape_weight = 0.0; ///< instead of the options'; 0: theirs
     bool along_rays = false;
     bool fix_shape = false;
@@ -30,6 +33,7 @@ namespace {
 constexpr std::size_t kStartPoints = 400;
 constexpr std::size_t kStarts = 6;
 constexpr double kBetterArm = 0.97; // of the points' distance: else the arm stays
+constexpr double kDressedStartWeight = 0.5;
 constexpr std::size_t kCoarsePoints = 3000;
 constexpr std::size_t kMediumPoints = 16000;
 constexpr float kOutlinePixel = 3e-4f; // m^2 that a pixel of the outline counts as
@@ -145,7 +149,8 @@ void Fitter::refine(std::span<ObservedPoints> observed, const Stage& stage,
             associators[seen.instant].associate(points, pairing, rows, associations[i]);
             views.push_back({seen.instant, seen.camera, points.eye, &associations[i]});
         }
-        if (cloth) cloth->learn(associations);
+        if (cloth && (round == stage.learn[0] || round == stage.learn[1]))
+            cloth->learn(associations);
         if (options.floor) {
             for (std::size_t f = 0; f < posed.size(); ++f)
                 stand_on(level, posed[f], *options.floor, contacts[f]);
@@ -320,6 +325,7 @@ void Fitter::find_beneath(std::span<const Observation> observations, const Scope
     beneath.along_rays = scope.depth;
     beneath.outline_weight = scope.depth ? kOutlinePixel : 0.0f;
     beneath.dressed = true;
+    beneath.learn = {5, 9};
     beneath.shape_weight = options.dressed_shape_weight;
     if (scope.depth) beneath.empty_weight = 0.0f; // as in the fine stage
     beneath.from = 0.6, beneath.to = 0.9;
@@ -327,15 +333,19 @@ void Fitter::find_beneath(std::span<const Observation> observations, const Scope
     if (!options.use_free_form) return;
     beneath.level = 0;
     beneath.rounds = 3;
+    beneath.learn = {0, 1};
     beneath.reach_m[0] = beneath.reach_m[1], beneath.scale_m[0] = beneath.scale_m[1];
     beneath.from = 0.9, beneath.to = 1.0;
     beneath.free_form = true;
     refine(observed, beneath, options, rows, result);
 }
 
-FitResult Fitter::fit(std::span<const Observation> observations, const FitOptions& options,
+FitResult Fitter::fit(std::span<const Observation> observations, const FitOptions& wanted,
                       const RowLoop& rows) {
     const Scope scope = scope_of(observations);
+    FitOptions options = wanted;
+    // Cloth is no shape of a body: the prior holds against it.
+    if (wanted.dressed) options.shape_weight = std::max(wanted.shape_weight, kDressedStartWeight);
     FitResult result = start(observations, scope, options, rows);
     result.sex = options.sex.value_or(likelier_sex(result.state.shape.coefficients));
     find_together(observations, scope, options, rows, result);

@@ -18,7 +18,7 @@ struct FitOptions {
     std::optional<geometry::Plane> floor; ///< feet that are near it stand on it
     bool dressed = false;                 ///< cloth may lie between skin and points
     ClothGapOptions cloth;                ///< of dressed people
-    double dressed_shape_weight = 0.05;   ///< of the prior beneath clothes
+    double dressed_shape_weight = 0.2;    ///< of the prior beneath clothes
     bool rough = false;                   ///< stop before the finest surface
     bool use_free_form = true;            ///< move onto detail that the components cannot show
     FreeFormOptions free_form;

@@ -33,9 +33,9 @@ using toile::Vec3f;
 using namespace toile::evaluation;
 
 constexpr std::uint32_t kPoses = 5;
-constexpr std::array kNames{"bust_girth",      "waist_girth",   "hip_girth",
-                            "thigh_girth",     "calf_girth",    "upper_arm_girth",
-                            "neck_girth",      "arm_length",    "neck_to_hip_distance",
+constexpr std::array kNames{"bust_girth",        "waist_girth", "hip_girth",
+                            "thigh_girth",       "calf_girth",  "upper_arm_girth",
+                            "neck_girth",        "arm_length",  "neck_to_hip_distance",
                             "inside_leg_length", "stature"};
 
 struct Settings {
@@ -154,7 +154,8 @@ struct Evaluation {
     explicit Evaluation(const Settings& wanted)
         : settings(wanted), model(settings.model), fitter(model), measurer(model.space().model()) {}
 
-    nlohmann::ordered_json errors_of(const fit::FitResult& result, const body::Measurements& truth) {
+    nlohmann::ordered_json errors_of(const fit::FitResult& result,
+                                     const body::Measurements& truth) {
         const auto rest = fit::rest_shape(model, result.state.shape);
         const auto found = measurer.measure(rest.positions, rest.skeleton);
         nlohmann::ordered_json out;
@@ -209,12 +210,11 @@ struct Evaluation {
                 }
             }
             if (f != 0 || surfaces.front().positions.size() != rest.positions.size()) continue;
-            for (const char* name : {"bust_girth", "waist_girth", "hip_girth", "upper_arm_girth",
-                                     "thigh_girth"}) {
+            for (const char* name :
+                 {"bust_girth", "waist_girth", "hip_girth", "upper_arm_girth", "thigh_girth"}) {
                 const auto tape = reading_of(rest, name);
                 const double skin = girth_at(tape, rest.positions, {surfaces.front()});
-                row["ease_mm"][name] =
-                    1000.0 * (girth_at(tape, rest.positions, surfaces) - skin);
+                row["ease_mm"][name] = 1000.0 * (girth_at(tape, rest.positions, surfaces) - skin);
             }
         }
         fit::FitOptions options = settings.fit;

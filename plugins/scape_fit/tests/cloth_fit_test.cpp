@@ -15,8 +15,7 @@ geometry::TriangleMesh dressed(const Somebody& who, std::size_t instant) {
     geometry::vertex_normals(who.surface.positions, who.surface.triangles, normals);
     geometry::TriangleMesh out = who.surface;
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        const bool trunk =
-            parts[v] == body::Part::upper_torso || parts[v] == body::Part::lower_torso;
+        const bool trunk = parts[v] == body::Part::torso || parts[v] == body::Part::pelvis;
         if (!trunk) continue;
         const Vec3f& p = who.surface.positions[v];
         const float fold = std::sin(20.0f * p.y() + 2.0f * std::atan2(p.x(), p.z()) +
@@ -86,7 +85,8 @@ TEST(ClothGaps, LooseClothIsBelievedLessThanTightClothAndSkinNeverOutsideOfIt) {
     ClothGaps gaps(level, {});
     // One patch with cloth 40 mm off, all others on the skin.
     std::uint32_t loose = 0;
-    while (level.clothed[loose] == 0 || (level.mean[loose] - Vec3f(0.0f, 1.1f, 0.1f)).norm() > 0.05f)
+    while (level.clothed[loose] == 0 ||
+           (level.mean[loose] - Vec3f(0.0f, 1.1f, 0.1f)).norm() > 0.05f)
         ++loose;
     Association pairs;
     for (std::uint32_t v = 0; v < level.vertices.size(); ++v) {
