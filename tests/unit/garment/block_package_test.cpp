@@ -7,6 +7,7 @@
 #include "support/temporary_folder.h"
 #include "support/throws.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <map>
 
@@ -139,6 +140,33 @@ TEST(Block, MakesEqualBytes) {
     for (const char* const name : {"garment.json", "t-shirt-M.glb"}) {
         EXPECT_EQ(read_bytes(a / name, 1u << 24), read_bytes(b / name, 1u << 24)) << name;
     }
+}
+
+// Square metres of cloth.
+double cloth_area(const GarmentPackage& package) {
+    double area = 0.0;
+    const auto& at = package.sizes.front().material_coords;
+    for (std::size_t c = 0; c + 2 < at.size(); c += 3) {
+        const Vec2f a = at[c + 1] - at[c];
+        const Vec2f b = at[c + 2] - at[c];
+        area += 0.5 * std::abs(a.x() * b.y() - a.y() * b.x());
+    }
+    return area;
+}
+
+TEST(Block, EaseIsCutAroundTheBody) {
+    const SizeOrder order = {"M", std::make_shared<const body::BodyModel>(
+                                      body::load_body_model(body::find_avatar("mannequin")))};
+    Design close = coarse("t-shirt");
+    close.girth_ease_m = 0.02;
+    close.id = "close-shirt";
+    Design wide = coarse("t-shirt");
+    wide.girth_ease_m = 0.12;
+    const GarmentPackage narrow = make_block(close, {&order, 1});
+    // Ten centimetres more around a body of some 60 cm, and in the sleeves.
+    EXPECT_GT(cloth_area(make_block(wide, {&order, 1})) - cloth_area(narrow), 0.05);
+    EXPECT_EQ(narrow.manifest.id, "close-shirt");
+    EXPECT_EQ(narrow.manifest.kind, "t-shirt");
 }
 
 TEST(Block, RefusesWhatItCannotMake) {
