@@ -46,6 +46,7 @@ FitShape cloth_shape(const FitModel& model, FreeForm& field, const FitState& sta
     }
     std::vector<const PosedLevel*> surfaces(associations.size(), &posed);
     std::vector<const Association*> pairs;
+    pairs.reserve(associations.size());
     for (const Association& one : associations)
         pairs.push_back(&one);
     FitShape out = state.shape;

@@ -108,12 +108,6 @@ void stand_on(const FitLevel& level, const PosedLevel& posed, const geometry::Pl
 
 } // namespace
 
-void Fitter::refine(std::span<const Observation> observations, const Stage& stage,
-                    const FitOptions& options, const RowLoop& rows, FitResult& result) {
-    std::vector<ObservedPoints> observed(observations.begin(), observations.end());
-    refine(observed, stage, options, rows, result);
-}
-
 void Fitter::refine(std::span<ObservedPoints> observed, const Stage& stage,
                     const FitOptions& options, const RowLoop& rows, FitResult& result) {
     const FitLevel& level = model_.level(stage.level);
@@ -206,14 +200,13 @@ body::Sex Fitter::likelier_sex(const ShapeVector& shape) const {
                : body::kSexes[1];
 }
 
-/// The best of the library's bodies after some steps each. `seen`: of one instant; `points`: how
-/// many of them choose among the library.
-FitResult Fitter::start_instant(std::span<const Observation> seen, std::size_t points,
-                                const FitResult& before, const FitOptions& options,
-                                const RowLoop& rows) {
+/// The best of the library's bodies after some steps each. `seen`: of one instant.
+FitResult Fitter::start_instant(std::span<const Observation> seen, const FitResult& before,
+                                const FitOptions& options, const RowLoop& rows) {
     std::vector<Vec3f> few;
     for (const Observation& one : seen) {
-        const std::size_t step = std::max<std::size_t>(1, one.points.size() * seen.size() / points);
+        const std::size_t step =
+            std::max<std::size_t>(1, one.points.size() * seen.size() / kStartPoints);
         for (std::size_t i = 0; i < one.points.size(); i += step)
             few.push_back(one.points[i]);
     }
@@ -269,7 +262,7 @@ FitResult Fitter::start(std::span<const Observation> observations, const Scope& 
             of_instant.push_back(one);
             of_instant.back().instant = 0;
         }
-        FitResult best = start_instant(of_instant, kStartPoints, result, options, rows);
+        FitResult best = start_instant(of_instant, result, options, rows);
         if (f == 0)
             result = std::move(best);
         else

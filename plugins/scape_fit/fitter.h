@@ -58,12 +58,10 @@ class Fitter {
     [[nodiscard]] static Scope scope_of(std::span<const Observation> observations);
     void refine(std::span<ObservedPoints> observed, const Stage& stage, const FitOptions& options,
                 const RowLoop& rows, FitResult& result);
-    void refine(std::span<const Observation> observations, const Stage& stage,
-                const FitOptions& options, const RowLoop& rows, FitResult& result);
 
     [[nodiscard]] FitResult start(std::span<const Observation> observations, const Scope& scope,
                                   const FitOptions& options, const RowLoop& rows);
-    [[nodiscard]] FitResult start_instant(std::span<const Observation> seen, std::size_t points,
+    [[nodiscard]] FitResult start_instant(std::span<const Observation> seen,
                                           const FitResult& before, const FitOptions& options,
                                           const RowLoop& rows);
     void find_together(std::span<const Observation> observations, const Scope& scope,

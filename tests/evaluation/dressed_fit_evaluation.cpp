@@ -9,19 +9,17 @@
 #include "assets/files.h"
 #include "body/body_file.h"
 #include "body/measurer.h"
-#include "body/survey.h"
 #include "core/error.h"
 #include "evaluation/simulated_views.h"
 #include "geometry/nearest_surface.h"
-#include "geometry/slice.h"
 #include "scape_fit/cloth_looseness.h"
 #include "scape_fit/fitter.h"
 
-#include <Eigen/Eigenvalues>
+#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace {
 
@@ -94,7 +92,8 @@ void save_ply(const toile::geometry::TriangleMesh& mesh, const fs::path& file) {
 Seen see_undressed(const Settings& settings, std::uint64_t seed,
                    const std::vector<toile::geometry::TriangleMesh>& surfaces) {
     Seen out;
-    const fs::path file = fs::temp_directory_path() / "toile_undressed.ply";
+    const fs::path file =
+        fs::temp_directory_path() / ("toile_undressed_" + std::to_string(getpid()) + ".ply");
     for (std::size_t f = 0; f < surfaces.size(); ++f) {
         save_ply(surfaces[f], file);
         sensor::Scenario scenario = scenario_of(settings, seed + 100 * f);
@@ -105,43 +104,6 @@ Seen see_undressed(const Settings& settings, std::uint64_t seed,
     }
     fs::remove(file);
     return out;
-}
-
-/// Girth of all `surfaces` together in the plane of a tape (points of the body at rest) as this
-/// instant has it, the body's first: of the loops around the tape's middle.
-double girth_at(const body::Reading& tape, std::span<const Vec3f> rest,
-                const std::vector<toile::geometry::TriangleMesh>& surfaces) {
-    const auto& posed = surfaces.front().positions;
-    std::vector<Vec3f> places;
-    for (const auto& loop : tape.tapes)
-        for (const Vec3f& p : loop.points) {
-            std::size_t best = 0;
-            for (std::size_t v = 1; v < rest.size(); ++v)
-                if ((rest[v] - p).squaredNorm() < (rest[best] - p).squaredNorm()) best = v;
-            places.push_back(posed[best]);
-        }
-    Vec3f middle = Vec3f::Zero();
-    for (const Vec3f& p : places)
-        middle += p / static_cast<float>(places.size());
-    toile::Mat3f spread = toile::Mat3f::Zero();
-    float radius = 0.0f;
-    for (const Vec3f& p : places) {
-        spread += (p - middle) * (p - middle).transpose();
-        radius = std::max(radius, (p - middle).norm());
-    }
-    const Eigen::SelfAdjointEigenSolver<toile::Mat3f> axes(spread);
-    const auto plane = toile::geometry::Plane::through(middle, axes.eigenvectors().col(0));
-    std::vector<Vec3f> points;
-    for (const auto& surface : surfaces)
-        for (const auto& loop :
-             toile::geometry::slice(surface.positions, surface.triangles, plane)) {
-            Vec3f centre = Vec3f::Zero();
-            for (const Vec3f& p : loop.points)
-                centre += p / static_cast<float>(loop.points.size());
-            if ((centre - middle).norm() > 0.5f * radius) continue;
-            points.insert(points.end(), loop.points.begin(), loop.points.end());
-        }
-    return points.empty() ? 0.0 : toile::geometry::hull_girth(points, plane);
 }
 
 const body::Measurement* find(const body::Measurements& all, std::string_view name) {
@@ -177,12 +139,6 @@ struct Evaluation {
         return 1000.0 * sum / static_cast<double>(skin.positions.size());
     }
 
-    body::Reading reading_of(const body::BodyShape& rest, const std::string& name) const {
-        const auto figure = measurer.figure(rest.positions, rest.skeleton);
-        body::Survey survey(figure);
-        return body::measurement_definitions({&name, 1}).front()->read(survey);
-    }
-
     nlohmann::ordered_json run(const fs::path& folder, std::uint64_t seed) {
         const auto file = body::load_body_file(folder / "body.json");
         const auto rest = body::shape_of(file, model.space());
@@ -197,25 +153,11 @@ struct Evaluation {
         for (std::uint32_t f = 0; f < kPoses; ++f) {
             simulator.show(f);
             seen.add(simulator, f);
-            std::vector<toile::geometry::TriangleMesh> surfaces;
-            for (const auto& one : simulator.figures()[0]->surfaces()) {
-                toile::geometry::TriangleMesh mesh;
-                mesh.positions = one.positions;
-                mesh.triangles = one.surface.triangles;
+            for (const auto& one : simulator.figures()[0]->surfaces())
                 if (one.role == body::SurfaceRole::body) {
-                    bare.push_back(mesh);
-                    surfaces.insert(surfaces.begin(), std::move(mesh));
-                } else {
-                    surfaces.push_back(std::move(mesh));
+                    bare.emplace_back().positions = one.positions;
+                    bare.back().triangles = one.surface.triangles;
                 }
-            }
-            if (f != 0 || surfaces.front().positions.size() != rest.positions.size()) continue;
-            for (const char* name :
-                 {"bust_girth", "waist_girth", "hip_girth", "upper_arm_girth", "thigh_girth"}) {
-                const auto tape = reading_of(rest, name);
-                const double skin = girth_at(tape, rest.positions, {surfaces.front()});
-                row["ease_mm"][name] = 1000.0 * (girth_at(tape, rest.positions, surfaces) - skin);
-            }
         }
         fit::FitOptions options = settings.fit;
         options.floor = seen.floor;
@@ -270,33 +212,19 @@ void run(const Settings& settings) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    if (argc < 3) return std::fputs("usage: see the head of the source\n", stderr), 2;
-    settings.model = argv[1];
-    settings.cases = argv[2];
-    for (int i = 3; i < argc; ++i) {
-        const std::string key = argv[i];
-        const auto value = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
-        if (key == "--period")
-            settings.period = std::stod(value());
-        else if (key == "--noise")
-            settings.noise = value();
-        else if (key == "--count")
-            settings.count = std::stoul(value());
-        else if (key == "--only")
-            settings.only = value();
-        else if (key == "--json")
-            settings.json = value();
-        else if (key == "--dressed-only")
-            settings.compare = false;
-        else if (key == "--alike")
-            settings.fit.cloth.alike = std::stof(value());
-        else if (key == "--gap-noise")
-            settings.fit.cloth.noise_m = std::stof(value());
-        else if (key == "--weight")
-            settings.fit.dressed_shape_weight = std::stod(value());
-        else
-            return std::fprintf(stderr, "unknown option %s\n", key.c_str()), 2;
-    }
+    CLI::App app("Fits dressed people seen by simulated cameras");
+    app.add_option("model", settings.model, "Folder of the body space")->required();
+    app.add_option("cases", settings.cases, "Folder of scripts/dressed-people")->required();
+    app.add_option("--period", settings.period, "Seconds from pose to pose");
+    app.add_option("--noise", settings.noise)->check(CLI::IsMember({"none", "usual", "full"}));
+    app.add_option("--count", settings.count, "How many cases");
+    app.add_option("--only", settings.only, "Cases whose names contain this");
+    app.add_option("--json", settings.json, "Gets all figures");
+    app.add_flag("!--dressed-only", settings.compare, "No fits to compare with");
+    app.add_option("--alike", settings.fit.cloth.alike);
+    app.add_option("--gap-noise", settings.fit.cloth.noise_m);
+    app.add_option("--weight", settings.fit.dressed_shape_weight);
+    CLI11_PARSE(app, argc, argv);
     try {
         run(settings);
     } catch (const std::exception& e) {
