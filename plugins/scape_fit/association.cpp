@@ -150,7 +150,7 @@ void Associator::pull_from_empty(const ObservedPoints& observed, const Associati
         const Vec3f& p = observed.points[near.index];
         const Vec3f offset = x - p;
         VertexPair pair;
-        pair.skin = false;
+        pair.kind = PairKind::empty;
         pair.vertex = v;
         pair.place = p;
         const float length = offset.norm();

@@ -3,9 +3,18 @@
 
 #include "core/types.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace toile::scape_fit {
+
+/// What a pair comes from.
+enum class PairKind : std::uint8_t {
+    skin,    ///< a point of the surface
+    outline, ///< where a camera sees the person end
+    empty,   ///< a place of the model where there is nothing
+    floor,   ///< beneath a foot
+};
 
 /// Pairs summed up at a vertex of the level: their weight, mean distance and mean place.
 struct VertexPair {
@@ -15,7 +24,7 @@ struct VertexPair {
     float distance = 0.0f;        ///< model minus observed, metres
     float weight = 0.0f;          ///< m^2 of surface
     float observed = 0.0f;        ///< the same before cloth lowers it
-    bool skin = true; ///< a point of the surface, not of an outline, empty space or the floor
+    PairKind kind = PairKind::skin;
 };
 
 struct Association {

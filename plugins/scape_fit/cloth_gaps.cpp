@@ -40,7 +40,7 @@ void ClothGaps::learn(std::span<const Association> associations) {
     std::vector<double> sums(kPatches, 0.0), areas(kPatches, 1e-12);
     for (const Association& one : associations)
         for (const VertexPair& pair : one.pairs) {
-            if (!pair.skin) continue;
+            if (pair.kind != PairKind::skin) continue;
             sums[patch_of_[pair.vertex]] +=
                 static_cast<double>(pair.observed * std::max(-pair.distance, 0.0f));
             areas[patch_of_[pair.vertex]] += static_cast<double>(pair.observed);

@@ -84,7 +84,7 @@ void ContourPairing::pair(const PosedLevel& posed, const Vec3f& eye, std::span<c
         sum.distance /= sum.weight;
         sum.place /= sum.weight;
         sum.normal.normalize();
-        sum.skin = false;
+        sum.kind = PairKind::outline;
         if (cloth != nullptr) sum.weight *= cloth->weight(v, sum.distance);
         out.push_back(sum);
     }

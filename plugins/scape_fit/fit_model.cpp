@@ -20,7 +20,7 @@ float trust_of(const body::BodyModel& model, std::uint32_t vertex) {
         if (joint == Joint::left_hand || joint == Joint::right_hand)
             hand += model.skin.weights[vertex][k];
     }
-    if (model.parts[vertex] == body::Part::head) return 0.3f;
+    if (model.parts[vertex] == body::Part::head) return 0.6f;
     return 1.0f - 0.8f * hand;
 }
 

@@ -15,9 +15,8 @@ constexpr double kLeastPaired = 0.75;     // of a scan's area within reach of th
 constexpr double kMostRms = 0.02;         // metres, of a scan's points
 constexpr double kLeastPairedDepth = 0.6; // grazing pixels have no partner
 constexpr double kMostRmsDepth = 0.045;
-constexpr double kOneSideWeight = 0.1; // of the prior, see FitOptions
-constexpr double kLeastSeen = 0.12;    // of the body's area: less says too little about it
-constexpr double kFarthest = 30.0; // deviations a coefficient may have: overfitting takes a dozen
+constexpr double kLeastSeen = 0.12; // of the body's area: less says too little about it
+constexpr double kFarthest = 30.0;  // deviations a coefficient may have: overfitting takes a dozen
 // A stationary rig that was calibrated once: degrees, millimetres and depth scale that may be off.
 constexpr CameraTrust kCalibrated{0.0035, 0.005, 0.003};
 constexpr CameraTrust kLooselyPlaced{0.02, 0.03, 0.003}; // found from the person
@@ -101,9 +100,9 @@ FitSession::Input FitSession::scan_input() {
     PreparedScan scan = prepare_scan(*scan_, kScanPoints);
     if (!scan.trouble.empty()) throw NotFitted(scan.trouble);
     Input out;
+    out.options = options_for_scan();
     out.options.ups = scan.ups;
     out.options.floor = scan.floor;
-    out.options.free_form = {0.008, 0.06, 2e9};
     out.notes["unit"] = scan.unit;
     out.notes["metres_per_unit"] = scan.metres_per_unit;
     out.notes["triangles_faced_inwards"] = scan.turned_inside_out;
@@ -165,6 +164,7 @@ void FitSession::add_pictures(Input& input) const {
 FitSession::Input FitSession::depth_input(const SessionOptions& options, const RowLoop& rows) {
     Input out;
     out.depth = true;
+    out.options = options_for_pictures(cameras_.size(), instants_.size());
     bool calibrated = true;
     for (const FitCamera& camera : cameras_) {
         calibrated = calibrated && camera.world_from_camera;
@@ -175,9 +175,6 @@ FitSession::Input FitSession::depth_input(const SessionOptions& options, const R
     if (!calibrated && cameras_.size() > 1) place_lost_cameras(options, rows, out);
     add_pictures(out);
     if (out.options.floor && !calibrated) out.options.ups = {out.options.floor->normal};
-    // From one side little is known of the depth of a body: the prior must tell.
-    if (cameras_.size() == 1 && instants_.size() == 1) out.options.shape_weight = kOneSideWeight;
-    out.options.free_form = {0.004, 0.15, 1.5e8};
     out.notes["cameras"] = cameras_.size();
     out.notes["instants"] = instants_.size();
     out.notes["calibrated"] = calibrated;

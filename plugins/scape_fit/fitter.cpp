@@ -34,6 +34,7 @@ constexpr std::size_t kStartPoints = 400;
 constexpr std::size_t kStarts = 6;
 constexpr double kBetterArm = 0.97; // of the points' distance: else the arm stays
 constexpr double kDressedStartWeight = 0.5;
+constexpr double kOneSideWeight = 0.03; // of the prior, see FitOptions
 constexpr std::size_t kCoarsePoints = 3000;
 constexpr std::size_t kMediumPoints = 16000;
 constexpr float kOutlinePixel = 3e-4f; // m^2 that a pixel of the outline counts as
@@ -92,6 +93,7 @@ void stand_on(const FitLevel& level, const PosedLevel& posed, const geometry::Pl
     for (std::uint32_t v = 0; v < level.vertices.size(); ++v) {
         VertexPair pair;
         pair.vertex = v;
+        pair.kind = PairKind::floor;
         pair.normal = floor.normal;
         pair.distance = floor.normal.dot(posed.positions[v]) - floor.offset;
         pair.weight = kFootWeight;
@@ -107,6 +109,24 @@ void stand_on(const FitLevel& level, const PosedLevel& posed, const geometry::Pl
 }
 
 } // namespace
+
+FitOptions options_for_pictures(std::size_t cameras, std::size_t instants) {
+    FitOptions out;
+    out.free_form = {0.008, 0.15, 1e8};
+    if (cameras == 1 && instants == 1) {
+        // Little is known of the depth of a body. Detail of the side that is seen would take over
+        // what the components say of the other.
+        out.shape_weight = kOneSideWeight;
+        out.detail_rounds = 1;
+    }
+    return out;
+}
+
+FitOptions options_for_scan() {
+    FitOptions out;
+    out.free_form = {0.008, 0.06, 2e9};
+    return out;
+}
 
 void Fitter::refine(std::span<ObservedPoints> observed, const Stage& stage,
                     const FitOptions& options, const RowLoop& rows, FitResult& result) {
@@ -295,17 +315,22 @@ void Fitter::find_detail(std::span<const Observation> observations, const Scope&
                          const FitOptions& options, const RowLoop& rows, FitResult& result) {
     std::vector<ObservedPoints> observed(observations.begin(), observations.end());
     const bool depth = scope.depth;
-    Stage fine{0, 8, {0.06f, depth ? 0.06f : 0.03f}, {0.03f, depth ? 0.03f : 0.01f}};
+    Stage fine{
+        0, 8, {0.06f, depth ? 0.06f : 0.03f}, {depth ? 0.05f : 0.03f, depth ? 0.05f : 0.03f}};
     fine.along_rays = depth;
     fine.outline_weight = kOutlinePixel;
     if (depth) fine.empty_weight = 0.0f; // outlines say it without bias
-    fine.from = 0.6, fine.to = 1.0;
+    fine.from = 0.6, fine.to = 0.8;
     fine.free_form = options.use_free_form;
     refine(observed, fine, options, rows, result);
     if (!options.use_free_form) return;
-    fine.rounds = 3;
-    fine.reach_m[0] = fine.reach_m[1], fine.scale_m[0] = fine.scale_m[1];
-    refine(observed, fine, options, rows, result);
+    fine.rounds = 1;
+    fine.reach_m[0] = fine.reach_m[1];
+    for (int i = 0; i < options.detail_rounds; ++i) {
+        fine.from = 0.8 + 0.2 * i / options.detail_rounds;
+        fine.to = 0.8 + 0.2 * (i + 1) / options.detail_rounds;
+        refine(observed, fine, options, rows, result);
+    }
 }
 
 /// What is seen is cloth: the body lies within it, and where cloth is tight in one of the instants

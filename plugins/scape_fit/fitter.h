@@ -22,10 +22,16 @@ struct FitOptions {
     bool rough = false;                   ///< stop before the finest surface
     bool use_free_form = true;            ///< move onto detail that the components cannot show
     FreeFormOptions free_form;
+    /// Pairs and detail anew, so often: what is far off the components is reached step by step.
+    int detail_rounds = 4;
     std::vector<Vec3f> ups{Vec3f::UnitY()}; ///< directions that may be up
     /// Told how far it is, [0, 1]; true: stop. The fit then throws Cancelled.
     std::function<bool(double)> progress = [](double) { return false; };
 };
+
+/// What suits depth pictures of so many cameras and instants, and scans.
+[[nodiscard]] FitOptions options_for_pictures(std::size_t cameras, std::size_t instants);
+[[nodiscard]] FitOptions options_for_scan();
 
 struct Cancelled {};
 

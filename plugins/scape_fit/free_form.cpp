@@ -6,6 +6,12 @@
 #include <numbers>
 
 namespace toile::scape_fit {
+namespace {
+
+// Of what a point says: an outline is as exact, but its pixels stand for less of the surface.
+constexpr double kOutlineShare = 0.5;
+
+} // namespace
 
 FreeForm::FreeForm(const FitLevel& full)
     : level_(full), laplacian_(geometry::cotangent_laplacian(full.mean, full.triangles)),
@@ -28,12 +34,13 @@ void FreeForm::solve(std::span<const PosedLevel* const> posed,
     Eigen::VectorXd weight = Eigen::VectorXd::Zero(n), right = Eigen::VectorXd::Zero(n);
     for (std::size_t a = 0; a < associations.size(); ++a)
         for (const VertexPair& pair : associations[a]->pairs) {
-            if (!pair.skin) continue;
+            if (pair.kind != PairKind::skin && pair.kind != PairKind::outline) continue;
+            const double share = pair.kind == PairKind::outline ? kOutlineShare : 1.0;
             const auto v = static_cast<int>(pair.vertex);
             // How far the place moves along the pair's normal by a unit of offset.
             const double along = pair.normal.dot(posed[a]->rotations[pair.vertex] *
                                                  level_.mean_normals[pair.vertex]);
-            const double w = options.information * pair.weight;
+            const double w = options.information * share * pair.weight;
             weight[v] += w * along * along;
             right[v] += w * along * (along * offsets[pair.vertex] - pair.distance);
         }

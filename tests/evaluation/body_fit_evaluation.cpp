@@ -30,8 +30,7 @@ struct Settings {
     std::vector<fs::path> poses;
     int first = 0, count = 1000;
     fs::path json;
-    double shape_weight = 0.02;
-    double information = 1.5e8, deviation = 0.004, correlation = 0.15;
+    std::optional<double> shape_weight, information, deviation, correlation; // the usual ones
     bool free_form = true;
     bool cameras = false;
     bool scan = false;
@@ -105,7 +104,8 @@ bool in_core(body::Part part, const body::TestPerson& person, std::size_t v) {
     return true;
 }
 
-/// A tape around the trunk does not go around the arms, even where they grow together in the plane.
+/// A tape around the trunk goes around both thighs where they part above its plane, and not around
+/// the arms, even where they grow together with the trunk in it.
 std::vector<toile::Triangle> without_arms(std::span<const toile::Triangle> triangles,
                                           std::span<const body::Part> parts) {
     const auto arm = [&](std::uint32_t v) {
@@ -153,8 +153,11 @@ void run(const Settings& settings) {
         const body::TestPerson person = body::load_test_person(people[n]);
         sensor::Simulator simulator(scenario_of(settings, people[n], 11 + n), &rows_on_all_cores);
         std::vector<fit::Observation> observations;
-        fit::FitOptions options;
         const auto instants = std::max<std::size_t>(1, settings.poses.size());
+        fit::FitOptions options =
+            settings.scan
+                ? fit::options_for_scan()
+                : fit::options_for_pictures(static_cast<std::size_t>(settings.views), instants);
         std::vector<std::vector<Vec3f>> truths;
         std::vector<body::JointTransforms> joints;
         for (std::size_t f = 0; f < instants; ++f) {
@@ -177,10 +180,13 @@ void run(const Settings& settings) {
             for (auto& one : seen.observations)
                 observations.push_back(std::move(one));
         }
-        options.shape_weight = settings.shape_weight;
-        if (settings.views == 1) options.shape_weight = std::max(options.shape_weight, 0.1);
         options.use_free_form = settings.free_form;
-        options.free_form = {settings.deviation, settings.correlation, settings.information};
+        options.shape_weight = settings.shape_weight.value_or(options.shape_weight);
+        options.free_form.deviation_m = settings.deviation.value_or(options.free_form.deviation_m);
+        options.free_form.correlation_m =
+            settings.correlation.value_or(options.free_form.correlation_m);
+        options.free_form.information =
+            settings.information.value_or(options.free_form.information);
         if (settings.cameras) options.camera = {0.0035, 0.005, 0.003};
         const double began = seconds();
         const fit::FitResult result = fitter.fit(observations, options, &rows_on_all_cores);
@@ -223,7 +229,8 @@ void run(const Settings& settings) {
             moved.rotation = joints[0][j].rotation;
             moved.translation =
                 joints[0][j].translation - moved.rotation * person.skeleton.rest_positions[j];
-            const bool trunk = plane.name == "bust_girth";
+            const bool trunk = plane.name == "bust_girth" || plane.name == "waist_girth" ||
+                               plane.name == "hip_girth";
             const auto girth_of = [&](std::span<const Vec3f> positions,
                                       std::span<const toile::Triangle> triangles,
                                       std::span<const body::Part> parts) {
