@@ -116,6 +116,16 @@ TEST(Measure, AScanOfAnAnalyticFigureHasItsKnownGirths) {
     }
 }
 
+/// How red the reddest pixel of some columns is.
+int reddest(const imaging::Image& image, int from = 0, int to = 1 << 20) {
+    int most = 0;
+    for (std::size_t at = 0; at < image.pixels.size(); at += 4) {
+        const int x = static_cast<int>(at / 4) % image.width;
+        if (x >= from && x < to) most = std::max(most, image.pixels[at] - image.pixels[at + 1]);
+    }
+    return most;
+}
+
 TEST(Measure, DrawsTheTapesAndTheirValues) {
     const TemporaryFolder folder;
     const auto picture = folder / "woman.png", sheet = folder / "sheet.png";
@@ -124,17 +134,31 @@ TEST(Measure, DrawsTheTapesAndTheirValues) {
          "waist_girth", "--measurement", "hip_girth", "--sheet", sheet.string()});
     ASSERT_EQ(result.status, 0) << result.output;
     EXPECT_THAT(result.output, HasSubstr(picture.string()));
-    const auto reddest = [](const imaging::Image& image) {
-        int most = 0;
-        for (std::size_t at = 0; at < image.pixels.size(); at += 4)
-            most = std::max(most, image.pixels[at] - image.pixels[at + 1]);
-        return most;
-    };
     const imaging::Image drawn = imaging::load_image(picture);
     EXPECT_GT(drawn.width, 560); // the view, and the values beside it
     EXPECT_EQ(drawn.height, 800);
     EXPECT_GT(reddest(drawn), 80);
     EXPECT_GT(reddest(imaging::load_image(sheet)), 80);
+}
+
+TEST(Measure, ATapeThatIsHiddenFromOneSideIsDrawnFromTwo) {
+    const TemporaryFolder folder;
+    const auto drawn = [&](const char* name) {
+        const auto sheet = folder / "sheet.png";
+        const ProgramResult result =
+            run_toile({"measure", "woman", "--measurement", name, "--sheet", sheet.string()});
+        EXPECT_EQ(result.status, 0) << result.output;
+        return imaging::load_image(sheet);
+    };
+    constexpr int kPicture = 220; // pixels, width of one
+    for (const char* name : {"total_crotch_length", "waist_girth"}) {
+        const imaging::Image sheet = drawn(name);
+        EXPECT_GT(reddest(sheet, 0, kPicture), 80) << name;
+        EXPECT_GT(reddest(sheet, kPicture, 2 * kPicture), 80) << name;
+        EXPECT_LT(reddest(sheet, 2 * kPicture), 10) << name;
+    }
+    EXPECT_LT(reddest(drawn("back_waist_length"), kPicture), 10);
+    EXPECT_LT(reddest(drawn("waist_breadth"), kPicture), 10); // through the body from all sides
 }
 
 TEST(Measure, SaysInOneLineWhatIsWrong) {
