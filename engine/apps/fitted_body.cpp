@@ -1,9 +1,9 @@
 #include "apps/fitted_body.h"
 
+#include "apps/plugin_limits.h"
 #include "assets/files.h"
 #include "core/error.h"
 #include "core/log.h"
-#include "host/views.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -14,16 +14,6 @@ namespace {
 
 constexpr std::uint32_t kDressedFrames = 5; // P5 4: the fewest that tell cloth from skin
 constexpr std::uint32_t kMostFrames = 20;
-
-toile_limits limits_of(const GlobalOptions& global, std::uint32_t threads) {
-    auto out = host::sized<toile_limits>();
-    out.max_people = 1;
-    out.max_vertices = 2'000'000;
-    out.max_triangles = 4'000'000;
-    out.thread_count = threads;
-    out.random_seed = global.seed;
-    return out;
-}
 
 /// All meshes of a file where their nodes stand.
 geometry::TriangleMesh load_scan(const std::filesystem::path& file) {
@@ -131,7 +121,7 @@ pipeline::FittedBody fit_body(const FitInput& input, const GlobalOptions& global
             if (terminal) std::fprintf(stderr, "\rfitting %3.0f %%", 100.0 * share);
         },
         &host::interrupt_flag());
-    const toile_limits limits = limits_of(global, services.thread_count());
+    const toile_limits limits = limits_of(global, services, kScannedPerson);
     pipeline::BodyFit fit(registry, services, limits);
     if (!input.scan.empty()) {
         fit.feed_scan(load_scan(input.scan), job);

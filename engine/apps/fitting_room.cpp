@@ -1,5 +1,6 @@
 #include "apps/fitting_room.h"
 
+#include "apps/plugin_limits.h"
 #include "body/body_file.h"
 #include "core/error.h"
 #include "garment/size_choice.h"
@@ -10,24 +11,9 @@
 namespace toile::apps {
 namespace {
 
-constexpr std::uint32_t kMostVertices = 200'000;
-constexpr std::uint32_t kMostTriangles = 400'000;
-
 host::RegistryOptions registry_options(const GlobalOptions& options) {
     host::RegistryOptions out;
     out.folders = options.plugin_folders;
-    return out;
-}
-
-pipeline::DressingOptions dressing_options(const GlobalOptions& options, bool live_clock) {
-    pipeline::DressingOptions out;
-    out.limits.size = sizeof(out.limits);
-    out.limits.max_people = 1;
-    out.limits.max_vertices = kMostVertices;
-    out.limits.max_triangles = kMostTriangles;
-    out.limits.live_clock = live_clock ? 1 : 0;
-    out.limits.frame_budget_s = 1.0 / 30.0;
-    out.limits.random_seed = options.seed;
     return out;
 }
 
@@ -55,8 +41,8 @@ std::vector<std::string> split_names(const std::string& list, const std::string&
 
 FittingRoom::FittingRoom(const GlobalOptions& options, const Outfit& outfit, bool live_clock)
     : services_(options.threads), registry_(services_, registry_options(options)),
-      job_({}, &host::interrupt_flag()), dressing_(dressing_options(options, live_clock)) {
-    dressing_.limits.thread_count = services_.thread_count();
+      job_({}, &host::interrupt_flag()) {
+    dressing_.limits = limits_of(options, services_, kDressedPerson, live_clock);
     body_ = load_body(outfit.body);
     std::vector<std::shared_ptr<const pipeline::BoundaryGarment>> garments;
     garments.reserve(outfit.garments.size());

@@ -2,6 +2,7 @@
 #include "apps/commands.h"
 #include "apps/fitted_body.h"
 #include "apps/tape_picture.h"
+#include "apps/tape_sheet.h"
 #include "body/body_file.h"
 #include "body/measurer.h"
 #include "core/error.h"

@@ -1,5 +1,6 @@
 // toile record: a sensor's pictures as capture folders, and the truth where the sensor knows it.
 #include "apps/commands.h"
+#include "apps/plugin_limits.h"
 #include "apps/run_output.h"
 #include "core/bytes.h"
 #include "core/error.h"
@@ -24,18 +25,6 @@ struct RecordOptions {
     bool realtime = false;
     bool surfaces = true;
 };
-
-toile_limits limits_of(const GlobalOptions& global, bool live, std::uint32_t threads) {
-    auto out = host::sized<toile_limits>();
-    out.max_people = 16;
-    out.max_vertices = 2'000'000;
-    out.max_triangles = 4'000'000;
-    out.thread_count = threads;
-    out.live_clock = live ? 1 : 0;
-    out.frame_budget_s = 1.0 / 30.0;
-    out.random_seed = global.seed;
-    return out;
-}
 
 /// One camera's folder being written, with truth.jsonl and truth_camera.json where known.
 class CameraRecorder {
@@ -133,8 +122,7 @@ void record(const RecordOptions& options, const GlobalOptions& global) {
     host::Registry registry(services, where);
     host::Job job({}, &host::interrupt_flag());
     pipeline::SensorSource source(options.source, registry, services,
-                                  limits_of(global, options.realtime, services.thread_count()),
-                                  job);
+                                  limits_of(global, services, kSensedScene, options.realtime), job);
 
     const fs::path out(options.out);
     const auto count = static_cast<std::uint32_t>(source.streams().size());

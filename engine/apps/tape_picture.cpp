@@ -113,61 +113,12 @@ imaging::Image legend(std::span<const body::LaidMeasurement> measurements, const
     return out;
 }
 
-render::RendererOptions renderer_options(int width, int height) {
-    render::RendererOptions out;
-    out.width = width;
-    out.height = height;
-    out.quality = render::Quality::high;
-    return out;
-}
-
-/// From where most of the tapes can be seen, the front preferred.
-render::View best_view(const TapeScene& scene, std::span<const geometry::Loop> tapes,
-                       const render::Box& box, const TapeSheetOptions& options) {
-    constexpr double kFront = 1.3, kHidden = 0.3;
-    render::View best;
-    double most = -1.0;
-    for (const char* name : {"front", "back", "right", "three_quarter", "left"}) {
-        const render::View view = render::view_from_name(name);
-        const render::Camera camera =
-            render::frame_view(view, box.low, box.high, options.width, options.height);
-        double length = 0.0;
-        for (const geometry::Loop& tape : tapes) {
-            const auto points = scene.seen(tape, camera);
-            for (std::size_t i = 1; i < points.size(); ++i)
-                length += static_cast<double>((points[i].pixel - points[i - 1].pixel).norm()) *
-                          (points[i].visible ? 1.0 : kHidden);
-        }
-        if (best.name.empty()) length *= kFront;
-        if (length <= most) continue;
-        most = length;
-        best = view;
-    }
-    return best;
-}
-
-/// Near enough to see the tapes, far enough to see where on the body they are.
-render::Box box_round(std::span<const geometry::Loop> tapes) {
-    constexpr float kAround = 0.12f, kLeast = 0.27f; // metres, half widths
-    render::Box tight;
-    for (const geometry::Loop& tape : tapes)
-        for (const Vec3f& p : tape.points)
-            tight.add(p);
-    const Vec3f middle = 0.5f * (tight.low + tight.high);
-    const Vec3f half = (0.5f * (tight.high - tight.low) + Vec3f::Constant(kAround))
-                           .cwiseMax(Vec3f(kLeast, kLeast, 0.0f));
-    render::Box out;
-    out.low = middle - half;
-    out.high = middle + half;
-    return out;
-}
-
 } // namespace
 
 imaging::Image draw_tapes(const body::BodyModel& model,
                           std::span<const body::LaidMeasurement> measurements,
                           const TapePictureOptions& options) {
-    TapeScene scene(model, renderer_options(options.width, options.height), true);
+    TapeScene scene(model, options.width, options.height, TapeScene::Backdrop::studio);
     for (std::size_t i = 0; i < measurements.size(); ++i)
         scene.lay(measurements[i].reading.tapes, color_of(i), kRadius);
     std::vector<imaging::Image> pictures;
@@ -185,36 +136,6 @@ imaging::Image draw_tapes(const body::BodyModel& model,
     }
     pictures.push_back(legend(measurements, options.title, options.height));
     return side_by_side(pictures);
-}
-
-imaging::Image draw_tape_sheet(const body::BodyModel& model,
-                               std::span<const body::LaidMeasurement> measurements,
-                               const TapeSheetOptions& options) {
-    constexpr int kCaption = 26;
-    constexpr Color kTape{200, 30, 40};
-    const int count = static_cast<int>(measurements.size());
-    const int rows = (count + options.columns - 1) / options.columns;
-    const int cell = options.height + kCaption;
-    imaging::Image out = blank(options.columns * options.width, rows * cell);
-    TapeScene scene(model, renderer_options(options.width, options.height), false);
-    LabelStyle caption;
-    caption.size = 11;
-    caption.at = LabelStyle::At::middle;
-    for (int i = 0; i < count; ++i) {
-        const body::LaidMeasurement& m = measurements[static_cast<std::size_t>(i)];
-        const int x = i % options.columns * options.width, y = i / options.columns * cell;
-        label(out, x + options.width / 2, y + cell - 8, std::string(m.definition->name), caption);
-        if (m.reading.tapes.empty()) continue;
-        const render::Box box = box_round(m.reading.tapes);
-        const render::View view = best_view(scene, m.reading.tapes, box, options);
-        scene.lay(m.reading.tapes, kTape, 0.008f * (box.high.y() - box.low.y()));
-        paste(
-            out,
-            scene.draw(render::frame_view(view, box.low, box.high, options.width, options.height)),
-            x, y);
-        scene.take_off();
-    }
-    return out;
 }
 
 } // namespace toile::apps

@@ -22,15 +22,4 @@ struct TapePictureOptions {
                                         std::span<const body::LaidMeasurement> measurements,
                                         const TapePictureOptions& options = {});
 
-struct TapeSheetOptions {
-    int columns = 5;
-    int width = 220, height = 240; ///< of each picture, pixels
-};
-
-/// A small picture of each measurement by itself, near and from where most of it is seen, with its
-/// name. \throw Error
-[[nodiscard]] imaging::Image draw_tape_sheet(const body::BodyModel& model,
-                                             std::span<const body::LaidMeasurement> measurements,
-                                             const TapeSheetOptions& options = {});
-
 } // namespace toile::apps

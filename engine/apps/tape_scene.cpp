@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kStep = 0.005f;    // metres between points that are looked at
 constexpr float kClear = 0.006f;   // metres: so far off the tape nothing hides it
-constexpr double kThrough = 0.35;  // how much of a hidden tape shines through the body
+constexpr double kThrough = 0.5;   // how much of a hidden tape shines through the body
 constexpr int kOtherThanWhite = 8; // sRGB steps
 
 float linear(std::uint8_t srgb) {
@@ -27,6 +27,14 @@ render::Instance add(render::Renderer& renderer, const geometry::TriangleMesh& m
     render::Instance out;
     out.mesh = renderer.add_mesh(description);
     out.material = renderer.add_material(material);
+    return out;
+}
+
+render::RendererOptions renderer_options(int width, int height) {
+    render::RendererOptions out;
+    out.width = width;
+    out.height = height;
+    out.quality = render::Quality::high;
     return out;
 }
 
@@ -53,11 +61,12 @@ void shine_through(imaging::Image& picture, const imaging::Image& over) {
 
 } // namespace
 
-TapeScene::TapeScene(const body::BodyModel& model, const render::RendererOptions& options,
-                     bool backdrop)
-    : context_(render::make_offscreen_context()), renderer_(*context_, options),
+TapeScene::TapeScene(const body::BodyModel& model, int width, int height, Backdrop backdrop)
+    : context_(render::make_offscreen_context()),
+      renderer_(*context_, renderer_options(width, height)),
       surface_(model.rest.positions, model.rest.triangles),
-      backdrop_(backdrop ? render::Background() : white()), floor_(backdrop) {
+      backdrop_(backdrop == Backdrop::studio ? render::Background() : white()),
+      floor_(backdrop == Backdrop::studio) {
     scene_.instances.push_back(add(renderer_, model.rest, render::mannequin_material()));
     for (const Vec3f& p : model.rest.positions)
         bounds_.add(p);

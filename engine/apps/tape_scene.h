@@ -27,8 +27,10 @@ struct SeenPoint {
 /// Not movable. Tapes are world curves, metres, as `body::lay_tapes` gives them.
 class TapeScene {
   public:
-    /// `model` (at rest) must outlive this. `backdrop`: a studio, else plain white. \throw Error
-    TapeScene(const body::BodyModel& model, const render::RendererOptions& options, bool backdrop);
+    enum class Backdrop : std::uint8_t { white, studio };
+
+    /// Pictures of width x height pixels. `model` (at rest) must outlive this. \throw Error
+    TapeScene(const body::BodyModel& model, int width, int height, Backdrop backdrop);
     TapeScene(const TapeScene&) = delete;
     TapeScene& operator=(const TapeScene&) = delete;
 

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 constexpr float kWeightTolerance = 1e-4f; // a row's sum against 1
 constexpr float kJointTolerance = 1e-4f;  // avatar.json against the nodes of the model, metres
 constexpr std::int64_t kSchema = 1;
-constexpr double kFarthest = 10.0; // metres
+constexpr double kFarthest = 10.0; // metres: no body, and no step of a shape, is larger
+constexpr const char* kTooFar = "is over 10 m away";
 
 constexpr std::array<std::string_view, 13> kPartNames = {"invalid",
                                                          "head",
@@ -79,6 +80,9 @@ Skeleton read_skeleton(JsonObject joints, const assets::Scene& scene, const asse
     Skeleton out;
     for (std::size_t j = 0; j < kJointCount; ++j) {
         const auto p = joints.numbers(std::string(joint_name(static_cast<Joint>(j))), 3);
+        for (const double x : p)
+            if (std::abs(x) > kFarthest)
+                throw joints.error(std::string(joint_name(static_cast<Joint>(j))), kTooFar);
         out.rest_positions[j] = Eigen::Vector3d(p[0], p[1], p[2]).cast<float>();
     }
     joints.finish();
@@ -146,6 +150,8 @@ std::vector<ShapeComponent> read_shape(JsonObject& avatar, const assets::Primiti
             component.name = entry.text("name");
             const auto joints = entry.numbers("joint_offsets", 3 * kJointCount);
             entry.finish();
+            for (const double offset : joints)
+                if (std::abs(offset) > kFarthest) throw entry.error("joint_offsets", kTooFar);
             for (std::size_t j = 0; j < kJointCount; ++j)
                 component.joint_offsets[j] =
                     Eigen::Vector3d(joints[3 * j], joints[3 * j + 1], joints[3 * j + 2])
@@ -164,7 +170,15 @@ std::vector<ShapeComponent> read_shape(JsonObject& avatar, const assets::Primiti
     return out;
 }
 
+/// \throw FileError for a point or an offset over 10 m from the origin
+void check_size(std::span<const Vec3f> points, const std::string& what, const std::string& file) {
+    for (const Vec3f& p : points)
+        if (!(p.cwiseAbs().maxCoeff() <= static_cast<float>(kFarthest)))
+            throw FileError(file, what + " " + kTooFar);
+}
+
 void check_surface(const geometry::TriangleMesh& mesh, const std::string& file) {
+    check_size(mesh.positions, "a vertex", file);
     const auto report = geometry::check_topology(mesh.positions, mesh.triangles);
     if (!report.closed() || report.components != 1)
         throw FileError(file, "its surface is not closed and in one piece: " +
@@ -172,14 +186,6 @@ void check_surface(const geometry::TriangleMesh& mesh, const std::string& file) 
                                        ? std::to_string(report.boundary_edges) + " border edges, " +
                                              std::to_string(report.components) + " pieces"
                                        : report.text()));
-}
-
-/// A name of a file beside avatar.json, nothing else.
-std::string plain_file_name(JsonObject& avatar, const std::string& key) {
-    const auto name = avatar.text(key);
-    if (name.empty() || fs::path(name).filename() != fs::path(name) || name == "." || name == "..")
-        throw avatar.error(key, "must be the name of a file in this folder");
-    return name;
 }
 
 } // namespace
@@ -205,7 +211,7 @@ BodyModel load_body_model(const fs::path& folder) {
     out.version = avatar.text("version");
     out.name = avatar.text("name");
     avatar.text("licence");
-    const fs::path model_file = folder / plain_file_name(avatar, "model");
+    const fs::path model_file = folder / avatar.file_name("model");
     const std::string model = model_file.string();
 
     const assets::Scene scene = assets::load_scene(model_file);
@@ -231,13 +237,16 @@ BodyModel load_body_model(const fs::path& folder) {
     for (const auto& name : measurements.keys())
         out.measurements[name] = measurements.number(name, 0.0, kFarthest);
     out.shape = read_shape(avatar, *primitive, out.layout, vertex_count);
+    for (const ShapeComponent& component : out.shape)
+        check_size(component.vertex_offsets, "an offset of '" + component.name + "'", model);
     avatar.finish();
     return out;
 }
 
 fs::path find_avatar(const std::string& id) {
+    std::error_code code; // of a name that is too long for a file there is none
     for (const auto& root : data_folders("avatars"))
-        if (fs::exists(root / id / "avatar.json")) return root / id;
+        if (fs::exists(root / id / "avatar.json", code)) return root / id;
     std::string known;
     for (const auto& other : list_avatars())
         known += (known.empty() ? "" : ", ") + other;

@@ -15,6 +15,7 @@ namespace {
 constexpr std::int64_t kSchema = 1;
 constexpr double kFarthest = 100.0; // deviations; beyond, a file is broken
 constexpr std::size_t kMaxLevels = 8;
+constexpr int kMaxComponents = 1000;
 
 Eigen::VectorXd read_vector(JsonObject& object, const std::string& key, int size) {
     const auto values = object.numbers(key, static_cast<std::size_t>(size));
@@ -35,6 +36,15 @@ CoefficientPrior read_prior(JsonObject object, int k) {
     return out;
 }
 
+std::vector<Vec3f> picked(const geometry::TriangleMesh& mesh,
+                          std::span<const std::uint32_t> vertices) {
+    std::vector<Vec3f> out;
+    out.reserve(vertices.size());
+    for (const auto v : vertices)
+        out.push_back(mesh.positions[v]);
+    return out;
+}
+
 BodyLevel read_level(const TableReader& tables, const std::string& name,
                      const geometry::TriangleMesh& full, const std::string& file) {
     const auto nv = static_cast<std::uint32_t>(full.positions.size());
@@ -46,6 +56,8 @@ BodyLevel read_level(const TableReader& tables, const std::string& name,
     std::vector<Triangle> triangles;
     for (std::size_t i = 0; i < corners.size(); i += 3)
         triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    if (!geometry::check_topology(picked(full, vertices), triangles).closed())
+        throw FileError(file, "level '" + name + "' is not closed");
     return make_level(full, std::move(vertices), std::move(triangles));
 }
 
@@ -67,18 +79,16 @@ BodySpace BodySpace::load(const std::filesystem::path& folder) {
     space.integer("schema", kSchema, kSchema);
     const int k = out.component_count();
     if (k == 0) throw space.error("", "stands beside a model without shape components");
+    if (k > kMaxComponents) throw space.error("", "stands beside a model of too many components");
     JsonObject priors = space.object("coefficients");
     for (std::size_t s = 0; s < kSexes.size(); ++s)
         out.priors_[s] = read_prior(priors.object(sex_name(kSexes[s])), k);
     priors.finish();
     const auto levels = space.texts("levels");
     if (levels.size() > kMaxLevels) throw space.error("levels", "names too many levels");
-    const auto tables_name = space.text("tables");
-    if (std::filesystem::path(tables_name).filename() != std::filesystem::path(tables_name))
-        throw space.error("tables", "must be the name of a file in this folder");
+    const std::filesystem::path tables_file = folder / space.file_name("tables");
     space.finish();
 
-    const std::filesystem::path tables_file = folder / tables_name;
     const TableReader tables(tables_file);
     for (const auto& level : levels)
         out.levels_.push_back(read_level(tables, level, out.model_.rest, tables_file.string()));
@@ -168,10 +178,7 @@ BodyLevel make_level(const geometry::TriangleMesh& full, std::vector<std::uint32
     BodyLevel out;
     out.vertices = std::move(vertices);
     out.triangles = std::move(triangles);
-    std::vector<Vec3f> positions;
-    for (const auto v : out.vertices)
-        positions.push_back(full.positions[v]);
-    const geometry::NearestSurface nearest(positions, out.triangles);
+    const geometry::NearestSurface nearest(picked(full, out.vertices), out.triangles);
     for (const auto& p : full.positions) {
         const auto hit = nearest.nearest(p);
         out.triangle.push_back(hit.triangle);

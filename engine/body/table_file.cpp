@@ -2,6 +2,7 @@
 
 #include "core/bytes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -21,6 +22,12 @@ void append(std::vector<std::uint8_t>& bytes, const T* values, std::size_t count
     bytes.insert(bytes.end(), first, first + count * sizeof(T));
 }
 
+/// Fills `to`, which may be empty.
+template <class T>
+void copy(std::vector<T>& to, const std::uint8_t* from) {
+    if (!to.empty()) std::memcpy(to.data(), from, to.size() * sizeof(T));
+}
+
 void append_head(std::vector<std::uint8_t>& bytes, const std::string& name, std::uint32_t kind,
                  std::size_t rows, std::size_t columns) {
     const auto length = static_cast<std::uint32_t>(name.size());
@@ -31,9 +38,16 @@ void append_head(std::vector<std::uint8_t>& bytes, const std::string& name, std:
     append(bytes, head.data(), head.size());
 }
 
-std::size_t payload(std::uint32_t kind, std::size_t rows, std::size_t columns) {
-    return kind == kIntegers ? rows * columns * sizeof(std::uint32_t)
-                             : columns * (sizeof(float) + rows * sizeof(std::int16_t));
+/// Names stand in messages of one line.
+bool is_name_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/// Bytes of a table's values; all that there are (`most`) and one more when it would be more.
+std::size_t payload(std::uint32_t kind, std::size_t rows, std::size_t columns, std::size_t most) {
+    const std::size_t column = kind == kIntegers ? rows * sizeof(std::uint32_t)
+                                                 : sizeof(float) + rows * sizeof(std::int16_t);
+    return column != 0 && columns > most / column ? most + 1 : columns * column;
 }
 
 } // namespace
@@ -89,13 +103,16 @@ TableReader::TableReader(const std::filesystem::path& file)
         if (length > kMaxName) throw FileError(file_, "a table's name is too long");
         std::string name(length, '\0');
         take(name.data(), length);
+        if (!std::all_of(name.begin(), name.end(), is_name_letter))
+            throw FileError(file_, "a table's name is no name");
         std::array<std::uint32_t, 3> head{};
         take(head.data(), sizeof head);
         if (head[0] != kIntegers && head[0] != kNumbers)
             throw FileError(file_, "table '" + name + "' is of an unknown kind");
         const Table table = {head[0], head[1], head[2], at};
-        const std::size_t size = payload(table.kind, table.rows, table.columns);
-        if (bytes_.size() - at < size) throw FileError(file_, "is cut off in '" + name + "'");
+        const std::size_t left = bytes_.size() - at;
+        const std::size_t size = payload(table.kind, table.rows, table.columns, left);
+        if (size > left) throw FileError(file_, "is cut off in '" + name + "'");
         at += size;
         if (!tables_.emplace(name, table).second)
             throw FileError(file_, "table '" + name + "' stands twice");
@@ -115,7 +132,7 @@ std::vector<std::uint32_t> TableReader::integers(const std::string& name,
                                                  std::uint32_t bound) const {
     const Table& table = find(name, kIntegers);
     std::vector<std::uint32_t> out(table.rows * table.columns);
-    std::memcpy(out.data(), bytes_.data() + table.offset, out.size() * sizeof(std::uint32_t));
+    copy(out, bytes_.data() + table.offset);
     for (const auto value : out)
         if (value >= bound)
             throw FileError(file_,
@@ -136,8 +153,9 @@ Eigen::MatrixXf TableReader::numbers(const std::string& name, std::size_t rows,
     for (int c = 0; c < out.cols(); ++c) {
         float step = 0.0f;
         std::memcpy(&step, at, sizeof step);
-        if (!std::isfinite(step)) throw FileError(file_, "table '" + name + "' is not finite");
-        std::memcpy(column.data(), at + sizeof step, rows * sizeof(std::int16_t));
+        if (!std::isfinite((kLargest + 1.0f) * step))
+            throw FileError(file_, "table '" + name + "' is not finite");
+        copy(column, at + sizeof step);
         at += sizeof step + rows * sizeof(std::int16_t);
         for (int r = 0; r < out.rows(); ++r)
             out(r, c) = step * static_cast<float>(column[static_cast<std::size_t>(r)]);

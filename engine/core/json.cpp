@@ -1,5 +1,6 @@
 #include "core/json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -60,12 +61,19 @@ class DuplicateKeyCheck : public nlohmann::json_sax<nlohmann::json> {
     std::vector<std::set<std::string>> keys_;
 };
 
+/// Keys and texts of a file may hold line breaks; messages are one line.
+std::string one_line(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');
+    return text;
+}
+
 } // namespace
 
 nlohmann::json parse_json(std::string_view text, const std::string& name) {
     DuplicateKeyCheck check;
     if (!nlohmann::json::sax_parse(text, &check))
-        throw JsonError(name, check.error.empty() ? "not valid JSON" : check.error);
+        throw JsonError(name, check.error.empty() ? "not valid JSON" : one_line(check.error));
     return nlohmann::json::parse(text);
 }
 
@@ -96,7 +104,7 @@ bool JsonObject::has(const std::string& key) const {
 
 JsonError JsonObject::error(const std::string& key, const std::string& what) const {
     const std::string place = key.empty() ? place_ : place_ + "/" + key;
-    return {file_, (place.empty() ? std::string("/") : place) + ": " + what};
+    return {file_, one_line((place.empty() ? std::string("/") : place) + ": " + what)};
 }
 
 const nlohmann::json& JsonObject::require(const std::string& key) {
@@ -158,6 +166,13 @@ std::vector<double> JsonObject::numbers(const std::string& key, std::size_t coun
         out.push_back(element.get<double>());
     }
     return out;
+}
+
+std::string JsonObject::file_name(const std::string& key) {
+    const std::filesystem::path name(text(key));
+    if (name.empty() || name.filename() != name || name == "." || name == "..")
+        throw error(key, "must be the name of a file in this folder");
+    return name.string();
 }
 
 JsonObject JsonObject::object(const std::string& key) {

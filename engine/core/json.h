@@ -45,6 +45,8 @@ class JsonObject {
     std::vector<JsonObject> objects(const std::string& key);
     std::vector<std::string> texts(const std::string& key);
     const nlohmann::json& any(const std::string& key);
+    /// The name of a file beside this one: no folder, not "." or "..".
+    std::string file_name(const std::string& key);
 
     /// Optional values.
     std::string text_or(const std::string& key, std::string fallback);

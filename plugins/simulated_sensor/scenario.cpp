@@ -19,6 +19,7 @@ constexpr double kFar = 100.0; // metres
 constexpr std::int64_t kMostFrames = 1'000'000;
 constexpr std::size_t kMostOfAKind = 16; // people, cameras
 constexpr std::size_t kMostCoefficients = 200;
+constexpr double kFarthestShape = 100.0; // deviations
 
 /// What helps to read one file: its folder for relative paths.
 struct Reader {
@@ -31,7 +32,8 @@ struct Reader {
                                     const std::string& text) const {
         if (text.empty()) throw at.error(key, "names no file");
         const fs::path path = fs::path(text).is_absolute() ? fs::path(text) : folder / text;
-        if (!fs::exists(path)) throw at.error(key, "there is no " + path.string());
+        std::error_code code;
+        if (!fs::exists(path, code)) throw at.error(key, "there is no " + path.string());
         return path;
     }
 };
@@ -147,8 +149,9 @@ void read_body(JsonObject body, const Reader& reader, PersonSettings& out) {
             continue;
         }
         const std::string id = body.text(key);
+        std::error_code code;
         try {
-            out.source = fs::is_directory(id) ? fs::path(id) : body::find_avatar(id);
+            out.source = fs::is_directory(id, code) ? fs::path(id) : body::find_avatar(id);
         } catch (const Error& e) {
             throw body.error(key, e.what());
         }
@@ -159,6 +162,9 @@ void read_body(JsonObject body, const Reader& reader, PersonSettings& out) {
         const auto count = body.any("shape").size();
         if (count > kMostCoefficients) throw body.error("shape", "has more than 200 coefficients");
         out.shape = body.numbers("shape", count);
+        for (const double c : out.shape)
+            if (std::abs(c) > kFarthestShape)
+                throw body.error("shape", "has a value beyond 100 deviations");
         if (out.kind != BodyKind::avatar) throw body.error("shape", "belongs to an avatar");
     }
     body.finish();
@@ -239,7 +245,8 @@ SceneSettings read_scene(JsonObject scene, const Reader& reader) {
 } // namespace
 
 Scenario load_scenario(const fs::path& file) {
-    if (!fs::is_regular_file(file)) throw FileError(file.string(), "no such scenario");
+    std::error_code code;
+    if (!fs::is_regular_file(file, code)) throw FileError(file.string(), "no such scenario");
     const nlohmann::json json = parse_json_file(file);
     JsonObject root(json, file.string());
     const Reader reader{file.parent_path()};

@@ -72,11 +72,12 @@ endfunction()
 # Target stock_plugins: every loadable module of plugins/.
 add_custom_target(stock_plugins)
 
-# toile_add_plugin(name [LINK target...]): plugins/<name> as an algorithm library (every .cpp but
-# entry.cpp), a loadable module (entry.cpp) laid out as bin/plugins/<name>/ with its manifest, and
-# a test program from tests/*_test.cpp.
+# toile_add_plugin(name [LINK target...] [SANITIZED_TESTS file...]): plugins/<name> as an algorithm
+# library (every .cpp but entry.cpp), a loadable module (entry.cpp) laid out as bin/plugins/<name>/
+# with its manifest, and a test program from tests/*_test.cpp. SANITIZED_TESTS are those of them that
+# read files from outside: a program of their own, also run under the sanitizers.
 function(toile_add_plugin name)
-    cmake_parse_arguments(ARG "" "" "LINK;TEST_LINK" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "LINK;TEST_LINK;SANITIZED_TESTS" ${ARGN})
     file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
     list(REMOVE_ITEM sources "${CMAKE_CURRENT_SOURCE_DIR}/entry.cpp")
     if(sources)
@@ -110,6 +111,12 @@ function(toile_add_plugin name)
     add_dependencies(stock_plugins ${name})
 
     file(GLOB tests CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/tests/*_test.cpp")
+    if(ARG_SANITIZED_TESTS)
+        list(TRANSFORM ARG_SANITIZED_TESTS PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/tests/")
+        list(REMOVE_ITEM tests ${ARG_SANITIZED_TESTS})
+        toile_add_test(plugin_${name}_files SOURCES ${ARG_SANITIZED_TESTS}
+                       LINK ${name}_algorithm SANITIZED)
+    endif()
     if(tests)
         toile_add_test(plugin_${name} LABEL plugin SOURCES ${tests}
                        LINK ${name}_algorithm ${ARG_TEST_LINK})

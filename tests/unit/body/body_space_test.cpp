@@ -1,12 +1,9 @@
-// The shipped space of adult bodies: shapes, priors, levels, poses; and what its files refuse.
+// The shipped space of adult bodies: shapes, priors, levels, poses.
 #include "body/body_space.h"
 
 #include "body/body_from_numbers.h"
 #include "body/joint_limits.h"
 #include "body/pose_tables.h"
-#include "body/table_file.h"
-#include "core/bytes.h"
-#include "support/temporary_folder.h"
 #include "support/throws.h"
 
 #include <Eigen/Dense>
@@ -208,44 +205,6 @@ TEST(BodyNumbers, RefusesWhatNobodyIsByName) {
         static_cast<void>(from_numbers(Sex::male, {{"stature", 1.75}, {"cervical_height", 1.0}})),
         "nobody measures like that");
     EXPECT_ERROR(static_cast<void>(from_numbers(Sex::male, {{"tail_length", 0.3}})), "tail_length");
-}
-
-class TableFile : public testing::Test {
-  protected:
-    test::TemporaryFolder folder_;
-    fs::path file_ = folder_.path() / "t.tables";
-};
-
-TEST_F(TableFile, KeepsNumbersWithinItsBound) {
-    Eigen::MatrixXf values = Eigen::MatrixXf::Random(50, 3);
-    values.col(1) *= 1e-4f;
-    values.col(2).setZero();
-    TableWriter out;
-    out.numbers("a", values);
-    const std::vector<std::uint32_t> whole = {0, 7, 3};
-    out.integers("b", whole);
-    out.write(file_);
-    const TableReader in(file_);
-    const Eigen::MatrixXf read = in.numbers("a", 50, 3);
-    for (int c = 0; c < 3; ++c)
-        EXPECT_LE((read.col(c) - values.col(c)).cwiseAbs().maxCoeff(),
-                  values.col(c).cwiseAbs().maxCoeff() / 65000.0f);
-    EXPECT_EQ(in.integers("b", 8), whole);
-    EXPECT_ERROR(static_cast<void>(in.integers("b", 7)), "out of range");
-    EXPECT_ERROR(static_cast<void>(in.integers("a", 7)), "kind");
-    EXPECT_ERROR(static_cast<void>(in.numbers("a", 50, 4)), "instead of");
-    EXPECT_ERROR(static_cast<void>(in.numbers("c", 1, 1)), "no table");
-}
-
-TEST_F(TableFile, DamagedFilesAreRefused) {
-    TableWriter out;
-    out.numbers("a", Eigen::MatrixXf::Ones(4, 2));
-    out.write(file_);
-    const auto bytes = read_bytes(file_, 1000);
-    for (std::size_t keep = 0; keep < bytes.size(); ++keep) {
-        write_bytes(file_, std::span(bytes).first(keep));
-        EXPECT_THROW(TableReader{file_}, FileError) << keep << " bytes kept";
-    }
 }
 
 } // namespace

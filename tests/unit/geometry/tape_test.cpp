@@ -1,6 +1,7 @@
 #include "geometry/tape.h"
 
 #include "geometry/mesh.h"
+#include "support/ellipse.h"
 #include "support/meshes.h"
 
 #include <cmath>
@@ -10,12 +11,6 @@
 namespace toile::geometry {
 namespace {
 
-/// By the complete elliptic integral: 4 a E(e), e the eccentricity.
-double ellipse_perimeter(double a, double b) {
-    const double major = std::max(a, b), minor = std::min(a, b);
-    return 4.0 * major * std::comp_ellint_2(std::sqrt(1.0 - minor * minor / (major * major)));
-}
-
 TEST(GirthCutter, MeasuresEllipsesByTheirIntegral) {
     for (const auto& [a, b] : {std::pair{0.1, 0.1}, std::pair{0.17, 0.11}, std::pair{0.05, 0.2}}) {
         const TriangleMesh mesh =
@@ -23,7 +18,7 @@ TEST(GirthCutter, MeasuresEllipsesByTheirIntegral) {
         const SurfacePart part(mesh.triangles);
         const GirthCutter cutter(mesh.positions, part, Vec3f::UnitY());
         for (const float level : {0.05f, 0.5f, 0.93f})
-            EXPECT_NEAR(cutter.girth(level), ellipse_perimeter(a, b), 3e-5);
+            EXPECT_NEAR(cutter.girth(level), test::ellipse_perimeter(a, b), 3e-5);
         EXPECT_NEAR(cutter.extent(0.3f, Vec3f::UnitX()), a, 1e-5);
         EXPECT_NEAR(cutter.extent(0.3f, -Vec3f::UnitZ()), b, 1e-5);
         EXPECT_EQ(cutter.girth(1.5f), 0.0);
