@@ -17,8 +17,6 @@ constexpr double kLeastPairedDepth = 0.6; // grazing pixels have no partner
 constexpr double kMostRmsDepth = 0.045;
 constexpr double kLeastSeen = 0.12; // of the body's area: less says too little about it
 constexpr double kFarthest = 30.0;  // deviations a coefficient may have: overfitting takes a dozen
-// A stationary rig that was calibrated once: degrees, millimetres and depth scale that may be off.
-constexpr CameraTrust kCalibrated{0.0035, 0.005, 0.003};
 constexpr CameraTrust kLooselyPlaced{0.02, 0.03, 0.003}; // found from the person
 constexpr CameraTrust kWorld{1e-5, 1e-5, 0.003};         // the others are placed around it
 constexpr double kPlacingShare = 0.7;                    // of the time, where cameras are placed
@@ -171,7 +169,6 @@ FitSession::Input FitSession::depth_input(const SessionOptions& options, const R
         out.places.push_back(camera.world_from_camera.value_or(Eigen::Isometry3d::Identity()));
     }
     out.options.progress = options.progress;
-    out.options.camera = cameras_.size() > 1 ? kCalibrated : CameraTrust{};
     if (!calibrated && cameras_.size() > 1) place_lost_cameras(options, rows, out);
     add_pictures(out);
     if (out.options.floor && !calibrated) out.options.ups = {out.options.floor->normal};

@@ -97,9 +97,7 @@ void FitSolver::add_pairs(const FitLevel& level, std::span<const PosedLevel> pos
                 Eigen::Map<Eigen::Matrix<float, kCameraUnknowns, 1>> camera(row + k +
                                                                             kPoseUnknowns);
                 camera << -arm.cross(pair.normal), -pair.normal,
-                    pair.kind == PairKind::skin || pair.kind == PairKind::floor
-                        ? -pair.normal.dot(arm)
-                        : 0.0f;
+                    pair.kind == PairKind::skin ? -pair.normal.dot(arm) : 0.0f;
             }
             row[width] = pair.distance;
             block.row(at) *= std::sqrt(pair.weight * information);

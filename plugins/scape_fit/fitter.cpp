@@ -24,6 +24,7 @@ struct Fitter::Stage {
     bool along_rays = false;
     bool fix_shape = false;
     bool free_form = false;
+    int detail_rounds = 0; ///< after `rounds`: detail, then a round and detail again
     double damping = 1e-3;
     double from = 0.0, to = 1.0; ///< of the whole fit, for progress
 };
@@ -113,6 +114,8 @@ void stand_on(const FitLevel& level, const PosedLevel& posed, const geometry::Pl
 FitOptions options_for_pictures(std::size_t cameras, std::size_t instants) {
     FitOptions out;
     out.free_form = {0.008, 0.15, 1e8};
+    out.dressed_free_form = {0.004, 0.15, 1.5e8};
+    if (cameras > 1) out.camera = kCalibrated;
     if (cameras == 1 && instants == 1) {
         // Little is known of the depth of a body. Detail of the side that is seen would take over
         // what the components say of the other.
@@ -124,81 +127,134 @@ FitOptions options_for_pictures(std::size_t cameras, std::size_t instants) {
 
 FitOptions options_for_scan() {
     FitOptions out;
-    out.free_form = {0.008, 0.06, 2e9};
+    out.free_form = out.dressed_free_form = {0.008, 0.06, 2e9};
     return out;
+}
+
+/// A stage at work.
+class Fitter::Refinement {
+  public:
+    Refinement(Fitter& fitter, std::span<ObservedPoints> observed, const Stage& stage,
+               const FitOptions& options, const RowLoop& rows, FitResult& result)
+        : fitter_(fitter), observed_(observed), stage_(stage), options_(options), rows_(rows),
+          result_(result), level_(fitter.model_.level(stage.level)),
+          posed_(result.state.poses.size()), contacts_(posed_.size()),
+          associations_(observed.size()) {
+        if (stage.dressed) cloth_.emplace(level_, options.cloth);
+        for (std::size_t f = 0; f < posed_.size(); ++f)
+            associators_.emplace_back(level_);
+    }
+
+    void run() {
+        look(0);
+        for (int round = 0; round < all_rounds(); ++round) {
+            if (round >= stage_.rounds) {
+                find_offsets();
+                look(round);
+            }
+            step(round);
+            look(round + 1); // the last one is for offsets and figures
+        }
+        if (stage_.free_form) find_offsets();
+        judge();
+    }
+
+  private:
+    [[nodiscard]] int all_rounds() const { return stage_.rounds + stage_.detail_rounds; }
+    void look(int round);
+    void step(int round);
+    void find_offsets();
+    void judge();
+
+    Fitter& fitter_;
+    std::span<ObservedPoints> observed_;
+    const Stage& stage_;
+    const FitOptions& options_;
+    const RowLoop& rows_;
+    FitResult& result_;
+    const FitLevel& level_;
+    std::optional<ClothGaps> cloth_;
+    std::vector<PosedLevel> posed_;         ///< of each instant
+    std::vector<Associator> associators_;   ///< likewise
+    std::vector<Association> contacts_;     ///< likewise, with the floor
+    std::vector<Association> associations_; ///< of each observation
+    std::vector<AssociatedView> views_;
+};
+
+/// Poses the body and pairs it with what was observed.
+void Fitter::Refinement::look(int round) {
+    const FitState& state = result_.state;
+    const float at =
+        stage_.rounds > 1
+            ? std::min(1.0f, static_cast<float>(round) / static_cast<float>(stage_.rounds - 1))
+            : 1.0f;
+    AssociationOptions pairing;
+    pairing.reach_m = between(stage_.reach_m, at);
+    pairing.scale_m = between(stage_.scale_m, at);
+    pairing.along_rays = stage_.along_rays;
+    pairing.empty_weight = stage_.empty_weight;
+    pairing.outline_weight = stage_.outline_weight;
+    pairing.cloth = cloth_ ? &*cloth_ : nullptr;
+    for (std::size_t f = 0; f < posed_.size(); ++f) {
+        pose_level(fitter_.model_, level_, state.shape, state.poses[f], posed_[f]);
+        associators_[f].set_surface(posed_[f]);
+    }
+    views_.clear();
+    for (std::size_t i = 0; i < observed_.size(); ++i) {
+        ObservedPoints& points = observed_[i];
+        const Observation& seen = points.observation;
+        if (seen.camera < state.cameras.size()) points.correct(state.cameras[seen.camera]);
+        associators_[seen.instant].associate(points, pairing, rows_, associations_[i]);
+        views_.push_back({seen.instant, seen.camera, points.eye, &associations_[i]});
+    }
+    if (cloth_ && (round == stage_.learn[0] || round == stage_.learn[1]))
+        cloth_->learn(associations_);
+    if (!options_.floor) return;
+    for (std::size_t f = 0; f < posed_.size(); ++f) {
+        stand_on(level_, posed_[f], *options_.floor, contacts_[f]);
+        views_.push_back({f, state.cameras.size(), std::nullopt, &contacts_[f]});
+    }
+}
+
+/// Moves shape, poses and cameras.
+void Fitter::Refinement::step(int round) {
+    FitPriors priors;
+    priors.sex = result_.sex == body::Sex::invalid ? options_.sex : result_.sex;
+    priors.shape_weight = stage_.shape_weight > 0.0 ? stage_.shape_weight : options_.shape_weight;
+    priors.fix_shape = stage_.fix_shape;
+    priors.camera = options_.camera;
+    priors.cameras = options_.cameras;
+    fitter_.solver_.step(level_, posed_, views_, priors, stage_.damping, rows_, result_.state);
+    ++result_.rounds;
+    if (options_.progress(stage_.from + (stage_.to - stage_.from) * (round + 1) / all_rounds()))
+        throw Cancelled{};
+}
+
+void Fitter::Refinement::find_offsets() {
+    std::vector<const PosedLevel*> surfaces;
+    std::vector<const Association*> pairs;
+    for (std::size_t i = 0; i < observed_.size(); ++i) {
+        surfaces.push_back(&posed_[observed_[i].observation.instant]);
+        pairs.push_back(&associations_[i]);
+    }
+    fitter_.free_form_.solve(surfaces, pairs,
+                             stage_.dressed ? options_.dressed_free_form : options_.free_form,
+                             result_.state.shape.offsets);
+}
+
+void Fitter::Refinement::judge() {
+    result_.rms_m = cost(associations_, stage_.reach_m[1]);
+    double observed_area = 0.0, paired = 0.0;
+    for (const Association& a : associations_) {
+        observed_area += a.observed_area;
+        paired += a.paired_area;
+    }
+    result_.paired_share = paired / std::max(observed_area, 1e-9);
 }
 
 void Fitter::refine(std::span<ObservedPoints> observed, const Stage& stage,
                     const FitOptions& options, const RowLoop& rows, FitResult& result) {
-    const FitLevel& level = model_.level(stage.level);
-    FitState& state = result.state;
-    std::optional<ClothGaps> cloth;
-    if (stage.dressed) cloth.emplace(level, options.cloth);
-    std::vector<PosedLevel> posed(state.poses.size());
-    std::vector<Associator> associators;
-    for (std::size_t f = 0; f < state.poses.size(); ++f)
-        associators.emplace_back(level);
-    std::vector<Association> associations(observed.size()), contacts(posed.size());
-    for (int round = 0; round <= stage.rounds; ++round) {
-        const float at =
-            stage.rounds > 1
-                ? std::min(1.0f, static_cast<float>(round) / static_cast<float>(stage.rounds - 1))
-                : 1.0f;
-        AssociationOptions pairing;
-        pairing.reach_m = between(stage.reach_m, at);
-        pairing.scale_m = between(stage.scale_m, at);
-        pairing.along_rays = stage.along_rays;
-        pairing.empty_weight = stage.empty_weight;
-        pairing.outline_weight = stage.outline_weight;
-        pairing.cloth = cloth ? &*cloth : nullptr;
-        for (std::size_t f = 0; f < posed.size(); ++f) {
-            pose_level(model_, level, state.shape, state.poses[f], posed[f]);
-            associators[f].set_surface(posed[f]);
-        }
-        std::vector<AssociatedView> views;
-        for (std::size_t i = 0; i < observed.size(); ++i) {
-            ObservedPoints& points = observed[i];
-            const Observation& seen = points.observation;
-            if (seen.camera < state.cameras.size()) points.correct(state.cameras[seen.camera]);
-            associators[seen.instant].associate(points, pairing, rows, associations[i]);
-            views.push_back({seen.instant, seen.camera, points.eye, &associations[i]});
-        }
-        if (cloth && (round == stage.learn[0] || round == stage.learn[1]))
-            cloth->learn(associations);
-        if (options.floor) {
-            for (std::size_t f = 0; f < posed.size(); ++f)
-                stand_on(level, posed[f], *options.floor, contacts[f]);
-            for (std::size_t f = 0; f < posed.size(); ++f)
-                views.push_back({f, state.cameras.size(), std::nullopt, &contacts[f]});
-        }
-        if (round == stage.rounds) break; // the last look is for the figures
-        FitPriors priors;
-        priors.sex = result.sex == body::Sex::invalid ? options.sex : result.sex;
-        priors.shape_weight = stage.shape_weight > 0.0 ? stage.shape_weight : options.shape_weight;
-        priors.fix_shape = stage.fix_shape;
-        priors.camera = options.camera;
-        priors.cameras = options.cameras;
-        solver_.step(level, posed, views, priors, stage.damping, rows, state);
-        ++result.rounds;
-        if (options.progress(stage.from + (stage.to - stage.from) * (round + 1) / stage.rounds))
-            throw Cancelled{};
-    }
-    if (stage.free_form) {
-        std::vector<const PosedLevel*> surfaces;
-        std::vector<const Association*> pairs;
-        for (std::size_t i = 0; i < observed.size(); ++i) {
-            surfaces.push_back(&posed[observed[i].observation.instant]);
-            pairs.push_back(&associations[i]);
-        }
-        free_form_.solve(surfaces, pairs, options.free_form, state.shape.offsets);
-    }
-    result.rms_m = cost(associations, stage.reach_m[1]);
-    double observed_area = 0.0, paired = 0.0;
-    for (const Association& a : associations) {
-        observed_area += a.observed_area;
-        paired += a.paired_area;
-    }
-    result.paired_share = paired / std::max(observed_area, 1e-9);
+    Refinement(*this, observed, stage, options, rows, result).run();
 }
 
 Fitter::Scope Fitter::scope_of(std::span<const Observation> observations) {
@@ -320,17 +376,10 @@ void Fitter::find_detail(std::span<const Observation> observations, const Scope&
     fine.along_rays = depth;
     fine.outline_weight = kOutlinePixel;
     if (depth) fine.empty_weight = 0.0f; // outlines say it without bias
-    fine.from = 0.6, fine.to = 0.8;
+    fine.from = 0.6, fine.to = 1.0;
     fine.free_form = options.use_free_form;
+    if (fine.free_form) fine.detail_rounds = options.detail_rounds;
     refine(observed, fine, options, rows, result);
-    if (!options.use_free_form) return;
-    fine.rounds = 1;
-    fine.reach_m[0] = fine.reach_m[1];
-    for (int i = 0; i < options.detail_rounds; ++i) {
-        fine.from = 0.8 + 0.2 * i / options.detail_rounds;
-        fine.to = 0.8 + 0.2 * (i + 1) / options.detail_rounds;
-        refine(observed, fine, options, rows, result);
-    }
 }
 
 /// What is seen is cloth: the body lies within it, and where cloth is tight in one of the instants

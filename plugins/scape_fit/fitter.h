@@ -19,6 +19,7 @@ struct FitOptions {
     bool dressed = false;                 ///< cloth may lie between skin and points
     ClothGapOptions cloth;                ///< of dressed people
     double dressed_shape_weight = 0.2;    ///< of the prior beneath clothes
+    FreeFormOptions dressed_free_form;    ///< beneath clothes
     bool rough = false;                   ///< stop before the finest surface
     bool use_free_form = true;            ///< move onto detail that the components cannot show
     FreeFormOptions free_form;
@@ -29,7 +30,11 @@ struct FitOptions {
     std::function<bool(double)> progress = [](double) { return false; };
 };
 
-/// What suits depth pictures of so many cameras and instants, and scans.
+/// A stationary rig that was calibrated once: what may be off.
+inline constexpr CameraTrust kCalibrated{0.0035, 0.005, 0.003};
+
+/// What suits depth pictures of so many cameras (calibrated, when there are several) and instants,
+/// and scans.
 [[nodiscard]] FitOptions options_for_pictures(std::size_t cameras, std::size_t instants);
 [[nodiscard]] FitOptions options_for_scan();
 
@@ -56,6 +61,7 @@ class Fitter {
 
   private:
     struct Stage;
+    class Refinement;
     /// What is fitted: how many instants and cameras, and whether cameras or a scanner saw it.
     struct Scope {
         std::size_t instants = 0, cameras = 0;

@@ -32,7 +32,6 @@ struct Settings {
     fs::path json;
     std::optional<double> shape_weight, information, deviation, correlation; // the usual ones
     bool free_form = true;
-    bool cameras = false;
     bool scan = false;
 };
 
@@ -187,7 +186,6 @@ void run(const Settings& settings) {
             settings.correlation.value_or(options.free_form.correlation_m);
         options.free_form.information =
             settings.information.value_or(options.free_form.information);
-        if (settings.cameras) options.camera = {0.0035, 0.005, 0.003};
         const double began = seconds();
         const fit::FitResult result = fitter.fit(observations, options, &rows_on_all_cores);
         const double took = seconds() - began;
@@ -310,8 +308,6 @@ int main(int argc, char** argv) {
             settings.correlation = std::stod(value());
         else if (key == "--components-only")
             settings.free_form = false;
-        else if (key == "--cameras")
-            settings.cameras = true;
         else if (key == "--scan")
             settings.scan = true;
         else

@@ -43,7 +43,7 @@ struct Settings {
     std::string only;
     std::size_t count = 1000;
     bool compare = true;
-    fit::FitOptions fit;
+    fit::FitOptions fit = fit::options_for_pictures(4, kPoses);
 };
 
 sensor::Scenario scenario_of(const Settings& settings, std::uint64_t seed) {
@@ -161,8 +161,6 @@ struct Evaluation {
         }
         fit::FitOptions options = settings.fit;
         options.floor = seen.floor;
-        options.free_form = {0.004, 0.15, 1.5e8};
-        if (settings.noise == "full") options.camera = {0.0035, 0.005, 0.003};
         options.dressed = true;
         const double began = seconds();
         const auto beneath = fitter.fit(seen.observations, options, &rows_on_all_cores);
