@@ -50,17 +50,28 @@ struct Pictures {
     std::vector<std::vector<pipeline::SensorFrame>> instants;
 };
 
-/// Frames of every camera of one URI, in order; all of a recording's, at most a few hundred.
+/// Takes every other away.
+void halve(std::vector<std::vector<pipeline::SensorFrame>>& frames) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < frames.size(); i += 2)
+        std::swap(frames[kept++], frames[i]);
+    frames.resize(kept);
+}
+
+/// Frames of every camera of one URI, in order, spread over a recording.
 void read_pictures(const std::string& uri, host::Registry& registry, host::Services& services,
-                   const toile_limits& limits, host::Job& job, std::size_t wanted, Pictures& out) {
+                   const toile_limits& limits, host::Job& job, std::size_t wanted, bool color,
+                   Pictures& out) {
     constexpr std::size_t kMostRead = 600;
+    constexpr std::size_t kMostKept = 64;
     pipeline::SensorSource source(uri, registry, services, limits, job);
     const std::size_t first = out.streams.size();
     out.streams.insert(out.streams.end(), source.streams().begin(), source.streams().end());
     const auto count = static_cast<std::uint32_t>(source.streams().size());
     std::vector<std::vector<pipeline::SensorFrame>> frames;
     bool more = true;
-    while (more && frames.size() < kMostRead && !job.cancelled()) {
+    std::size_t every = 1; // which are kept
+    for (std::size_t read = 0; more && read < kMostRead && !job.cancelled(); ++read) {
         std::vector<pipeline::SensorFrame> instant(count);
         for (std::uint32_t c = 0; c < count && more; ++c) {
             int waits = 0;
@@ -69,9 +80,13 @@ void read_pictures(const std::string& uri, host::Registry& registry, host::Servi
                 if (!more) break;
                 usleep(1000); // a live sensor has no new picture yet
             }
-            instant[c].color = {};
+            if (!color) instant[c].color = {};
         }
-        if (more) frames.push_back(std::move(instant));
+        if (more && read % every == 0) frames.push_back(std::move(instant));
+        if (frames.size() > kMostKept) {
+            halve(frames);
+            every *= 2;
+        }
         if (wanted == 1 && frames.size() == 1) break;
     }
     if (frames.empty()) throw Error(uri + ": gave no frame");
@@ -130,7 +145,7 @@ pipeline::FittedBody fit_body(const FitInput& input, const GlobalOptions& global
         const std::uint32_t wanted =
             input.frames > 0 ? input.frames : (input.dressed ? kDressedFrames : 1);
         for (const std::string& uri : input.sources)
-            read_pictures(uri, registry, services, limits, job, wanted, pictures);
+            read_pictures(uri, registry, services, limits, job, wanted, input.dressed, pictures);
         fit.begin_cameras(pictures.streams, job);
         for (const auto& instant : pictures.instants)
             fit.feed_frames(instant);

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "garment/block_design.h"
+#include "imaging/srgb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,6 @@ namespace {
 
 bool starts_with(const std::string& text, const std::string& prefix) {
     return text.compare(0, prefix.size(), prefix) == 0;
-}
-
-float linear_from_srgb(const float c) {
-    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
 }
 
 // Girths where the avatar does not state them.
@@ -139,7 +136,7 @@ assets::Scene make_scene(const Design& design, const Pattern& pattern, const Ass
         for (const Colourway& colour : design.colours) {
             assets::Material material;
             material.name = parts[p].name + "_" + colour.name;
-            const Vec3f linear = colour.srgb.unaryExpr(&linear_from_srgb);
+            const Vec3f linear = colour.srgb.unaryExpr(&imaging::linear_from_srgb);
             material.base_color << linear, 1.0f;
             material.roughness = 0.85f;
             material.sheen_color = Vec3f(0.04f, 0.04f, 0.04f) + 0.15f * linear;

@@ -67,6 +67,11 @@ toile_stream stream_of(const SensorStream& stream, std::uint32_t number) {
     return out;
 }
 
+toile_view color_view(const imaging::Image& image) {
+    const std::size_t count = image.pixels.size() / 4;
+    return {image.pixels.data(), static_cast<std::uint32_t>(count), 4, TOILE_U8X4, 0};
+}
+
 } // namespace
 
 BodyFit::BodyFit(host::Registry& registry, host::Services& services, const toile_limits& limits) {
@@ -128,6 +133,7 @@ void BodyFit::feed_frames(std::span<const SensorFrame> frames) {
         given[i].sequence = frames[i].sequence;
         given[i].timestamp_ns = frames[i].timestamp_ns;
         given[i].depth_m = host::view_of(frames[i].depth.metres);
+        given[i].color = color_view(frames[i].color);
     }
     auto input = host::sized<toile_body_source_input>();
     input.frame_count = static_cast<std::uint32_t>(given.size());

@@ -101,6 +101,7 @@ Associator::Partner Associator::partner(const ObservedPoints& observed, std::siz
 void Associator::sum_up(const ObservedPoints& observed, const AssociationOptions& options,
                         Association& out) {
     sums_.assign(level_.vertices.size(), {});
+    const auto& covers = observed.observation.covers;
     for (std::size_t i = 0; i < partners_.size(); ++i) {
         const float area = observed.observation.areas[i];
         out.observed_area += area;
@@ -112,6 +113,8 @@ void Associator::sum_up(const ObservedPoints& observed, const AssociationOptions
         sum.weight += partner.weight;
         sum.distance += partner.weight * partner.distance;
         sum.place += partner.weight * observed.points[i];
+        if (covers.empty() || covers[i] == Cover::unknown) continue;
+        (covers[i] == Cover::skin ? sum.bare : sum.covered) += partner.weight;
     }
     for (std::uint32_t v = 0; v < sums_.size(); ++v) {
         VertexPair& sum = sums_[v];

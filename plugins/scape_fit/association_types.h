@@ -19,11 +19,12 @@ enum class PairKind : std::uint8_t {
 /// Pairs summed up at a vertex of the level: their weight, mean distance and mean place.
 struct VertexPair {
     std::uint32_t vertex = 0;
-    Vec3f normal = Vec3f::Zero(); ///< along which the distance counts, unit
-    Vec3f place = Vec3f::Zero();  ///< observed, world
-    float distance = 0.0f;        ///< model minus observed, metres
-    float weight = 0.0f;          ///< m^2 of surface
-    float observed = 0.0f;        ///< the same before cloth lowers it
+    Vec3f normal = Vec3f::Zero();      ///< along which the distance counts, unit
+    Vec3f place = Vec3f::Zero();       ///< observed, world
+    float distance = 0.0f;             ///< model minus observed, metres
+    float weight = 0.0f;               ///< m^2 of surface
+    float observed = 0.0f;             ///< the same before cloth lowers it
+    float bare = 0.0f, covered = 0.0f; ///< of `observed`: what looks like skin, and like cloth
     PairKind kind = PairKind::skin;
 };
 

@@ -18,6 +18,7 @@ namespace fit = toile::scape_fit;
 using toile::Vec3f;
 
 constexpr const char* kModel = "adult";
+using Rgba = std::array<std::uint8_t, 4>;
 
 template <class T>
 toile_view view_of(const std::vector<T>& rows, std::uint32_t format) {
@@ -245,6 +246,7 @@ class ScapeFit {
 
     void add_frames(fit::FitSession& session, const toile_body_source_input& input) {
         std::vector<toile::imaging::DepthImage> depths(input.frame_count);
+        std::vector<toile::imaging::Image> colors(input.frame_count);
         const sdk::SizedArray<const toile_frame> frames(input.frames, input.frame_count, "frames");
         for (std::uint32_t i = 0; i < input.frame_count; ++i) {
             const toile_frame& frame = frames[i];
@@ -259,10 +261,20 @@ class ScapeFit {
                 static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height))
                 throw sdk::bad_argument("frame.depth_m: not of the camera's size");
             image.metres.assign(depth.begin(), depth.end());
+            const auto color = sdk::span_of<Rgba>(frame.color, "frame.color");
+            if (color.size() != depth.size() && !color.empty())
+                throw sdk::bad_argument("frame.color: not of the depth picture's size");
+            toile::imaging::Image& shown = colors[frame.camera];
+            if (!color.empty()) {
+                shown.width = size.width;
+                shown.height = size.height;
+            }
+            for (const Rgba& pixel : color)
+                shown.pixels.insert(shown.pixels.end(), pixel.begin(), pixel.end());
             sequence_ = frame.sequence;
             timestamp_ns_ = frame.timestamp_ns;
         }
-        session.add_instant(std::move(depths));
+        session.add_instant(std::move(depths), std::move(colors));
     }
 
     sdk::Host host_;

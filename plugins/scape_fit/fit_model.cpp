@@ -43,6 +43,14 @@ bool may_be_clothed(const body::BodyModel& model, std::uint32_t vertex) {
     return bare < 0.5f;
 }
 
+bool in_face(const body::BodyModel& model, std::uint32_t vertex) {
+    const float brow = model.rest.positions[model.landmarks.at("brow")].y();
+    const float chin = model.skeleton.rest(Joint::head).y();
+    const float y = model.rest.positions[vertex].y();
+    return model.parts[vertex] == body::Part::head && y > chin && y < brow &&
+           model.rest.normals[vertex].z() > 0.4f;
+}
+
 std::array<float, kJointCount> shares_below(const body::SkinWeights& skin, std::size_t vertex) {
     std::array<float, kJointCount> out{};
     for (std::size_t k = 0; k < 4; ++k)
@@ -72,6 +80,7 @@ FitLevel make_fit_level(const body::BodySpace& space, const body::PoseTables& ta
         out.below.push_back(shares_below(model.skin, v));
         out.trust.push_back(trust_of(model, v));
         out.clothed.push_back(may_be_clothed(model, v) ? 1 : 0);
+        out.face.push_back(in_face(model, v) ? 1 : 0);
         for (int c = 0; c < k; ++c)
             out.components.block<3, 1>(static_cast<int>(3 * i), c) =
                 model.shape[static_cast<std::size_t>(c)].vertex_offsets[v];

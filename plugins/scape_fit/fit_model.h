@@ -29,6 +29,7 @@ struct FitLevel {
     std::vector<std::array<float, body::kJointCount>> below;
     std::vector<float> areas;          ///< (n) of the mean body that belongs to each, m^2
     std::vector<std::uint8_t> clothed; ///< (n) 1: not head, hands or feet
+    std::vector<std::uint8_t> face;    ///< (n) 1: between brow and chin, in front
     std::vector<float> trust; ///< (n) how far the model can be believed there: hands and face less
 };
 

@@ -73,19 +73,28 @@ FitSession::FitSession(const FitModel& model)
 void FitSession::begin(std::vector<FitCamera> cameras) {
     cameras_ = std::move(cameras);
     instants_.clear();
+    colors_.clear();
     scan_.reset();
     fitted_ = false;
 }
 
-void FitSession::add_instant(std::vector<imaging::DepthImage> depths) {
+void FitSession::add_instant(std::vector<imaging::DepthImage> depths,
+                             std::vector<imaging::Image> colors) {
+    colors.resize(cameras_.size());
     if (depths.size() != cameras_.size())
         throw NotFitted("an instant has " + std::to_string(depths.size()) + " pictures, of " +
                         std::to_string(cameras_.size()) + " cameras");
-    for (std::size_t c = 0; c < depths.size(); ++c)
-        if (depths[c].width != cameras_[c].intrinsics.width ||
-            depths[c].height != cameras_[c].intrinsics.height)
+    const auto fits = [](const auto& picture, const imaging::Intrinsics& camera) {
+        return picture.width == camera.width && picture.height == camera.height;
+    };
+    for (std::size_t c = 0; c < depths.size(); ++c) {
+        if (!fits(depths[c], cameras_[c].intrinsics))
             throw NotFitted("a depth picture is not of its camera's size");
+        if (!colors[c].empty() && !fits(colors[c], cameras_[c].intrinsics))
+            throw NotFitted("a colour picture is not of its depth picture's size");
+    }
     instants_.push_back(std::move(depths));
+    colors_.push_back(std::move(colors));
     fitted_ = false;
 }
 
@@ -146,6 +155,7 @@ void FitSession::add_pictures(Input& input) const {
             view->camera = cameras_[c].intrinsics;
             view->world_from_camera = input.places[c];
             view->depth = instants_[f][c];
+            view->color = colors_[f][c];
             views.push_back(std::move(view));
         }
         ObservedPerson person = observe_person(views, f);
@@ -221,6 +231,7 @@ void FitSession::fit(const SessionOptions& options, const RowLoop& rows) {
     report_["seen_share"] = result_.seen_share;
     report_["rounds"] = result_.rounds;
     report_cameras(input);
+    if (result_.skin_share) report_["skin_share"] = *result_.skin_share;
     if (options.dressed)
         for (const Looseness& one :
              measure_looseness(model_, measurer_, result_.state, input.observations, rows))

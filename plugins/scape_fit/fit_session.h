@@ -28,8 +28,10 @@ class FitSession {
 
     /// Forgets what was fed. No cameras: a scan will be fed.
     void begin(std::vector<FitCamera> cameras);
-    /// One picture of each camera, of one instant. \throw NotFitted when sizes differ
-    void add_instant(std::vector<imaging::DepthImage> depths);
+    /// One picture of each camera, of one instant; `colors` of the same pixels, or empty ones.
+    /// \throw NotFitted when sizes differ
+    void add_instant(std::vector<imaging::DepthImage> depths,
+                     std::vector<imaging::Image> colors = {});
     void add_scan(geometry::TriangleMesh scan);
 
     /// \throw NotFitted, Cancelled
@@ -61,6 +63,7 @@ class FitSession {
     body::Measurer measurer_;
     std::vector<FitCamera> cameras_;
     std::vector<std::vector<imaging::DepthImage>> instants_;
+    std::vector<std::vector<imaging::Image>> colors_; ///< of the instants
     std::optional<geometry::TriangleMesh> scan_;
     bool fitted_ = false;
     FitResult result_;

@@ -186,9 +186,9 @@ void FitSolver::add_camera_prior(const FitPriors& priors, const FitState& state)
     }
 }
 
-double FitSolver::step(const FitLevel& level, std::span<const PosedLevel> posed,
-                       std::span<const AssociatedView> views, const FitPriors& priors,
-                       double damping, const RowLoop& rows, FitState& state) {
+void FitSolver::linearise(const FitLevel& level, std::span<const PosedLevel> posed,
+                          std::span<const AssociatedView> views, const FitPriors& priors,
+                          const RowLoop& rows, const FitState& state) {
     const int size = camera_at(state, state.cameras.size());
     normal_.setZero(size, size);
     gradient_.setZero(size);
@@ -197,6 +197,12 @@ double FitSolver::step(const FitLevel& level, std::span<const PosedLevel> posed,
     add_shape_prior(priors, state);
     add_pose_prior(priors, state);
     add_camera_prior(priors, state);
+}
+
+double FitSolver::step(const FitLevel& level, std::span<const PosedLevel> posed,
+                       std::span<const AssociatedView> views, const FitPriors& priors,
+                       double damping, const RowLoop& rows, FitState& state) {
+    linearise(level, posed, views, priors, rows, state);
     normal_.diagonal() *= 1.0 + damping;
     normal_.diagonal().array() += 1e-6;
     const int k = model_.component_count();

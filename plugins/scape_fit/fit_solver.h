@@ -58,6 +58,17 @@ class FitSolver {
                 std::span<const AssociatedView> views, const FitPriors& priors, double damping,
                 const RowLoop& rows, FitState& state);
 
+    /// What the pairs and priors say around `state`: the unknowns' normal matrix and gradient.
+    void linearise(const FitLevel& level, std::span<const PosedLevel> posed,
+                   std::span<const AssociatedView> views, const FitPriors& priors,
+                   const RowLoop& rows, const FitState& state);
+    [[nodiscard]] const Eigen::MatrixXd& normal_matrix() const { return normal_; }
+    [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
+    /// Of the coefficients' distribution in a sex' population.
+    [[nodiscard]] const Eigen::MatrixXd& precision(body::Sex sex) const {
+        return populations_[sex == body::kSexes[0] ? 0 : 1].precision;
+    }
+
     /// Minus twice the logarithm of how likely a shape is, for people of a sex.
     [[nodiscard]] double unlikeliness(const ShapeVector& shape, body::Sex sex) const;
 

@@ -1,6 +1,7 @@
 #include "scape_fit/fitter.h"
 
 #include "core/error.h"
+#include "scape_fit/skin_tone.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,7 @@ struct Fitter::Stage {
     float empty_weight = 0.3f;
     float outline_weight = 0.0f;
     bool dressed = false;
-    /// Rounds after which the gaps of cloth are learned. Not after each: a body that they draw in
-    /// shows larger ones.
-    std::array<int, 2> learn{};
+    int learn_from = 0;        ///< round after which the gaps of cloth are learned, in each
     double shape_weight = 0.0; ///< instead of the options'; 0: theirs
     bool along_rays = false;
     bool fix_shape = false;
@@ -35,6 +34,8 @@ constexpr std::size_t kStartPoints = 400;
 constexpr std::size_t kStarts = 6;
 constexpr double kBetterArm = 0.97; // of the points' distance: else the arm stays
 constexpr double kDressedStartWeight = 0.5;
+constexpr int kLetGo = 5;               // rounds in which the body lets go of the cloth
+constexpr float kOnFace = 0.02f;        // metres from the fitted face
 constexpr double kOneSideWeight = 0.03; // of the prior, see FitOptions
 constexpr std::size_t kCoarsePoints = 3000;
 constexpr std::size_t kMediumPoints = 16000;
@@ -58,6 +59,8 @@ Observation fewer(const Observation& from, std::size_t count) {
         out.points.push_back(from.points[at]);
         if (!from.normals.empty()) out.normals.push_back(from.normals[at]);
         if (!from.rim.empty()) out.rim.push_back(from.rim[at]);
+        if (!from.hues.empty()) out.hues.push_back(from.hues[at]);
+        if (!from.covers.empty()) out.covers.push_back(from.covers[at]);
         out.areas.push_back(from.areas[at] * static_cast<float>(step));
     }
     return out;
@@ -147,6 +150,10 @@ class Fitter::Refinement {
 
     void run() {
         look(0);
+        if (cloth_) {
+            cloth_->find_bare(associations_);
+            look(0);
+        }
         for (int round = 0; round < all_rounds(); ++round) {
             if (round >= stage_.rounds) {
                 find_offsets();
@@ -207,8 +214,7 @@ void Fitter::Refinement::look(int round) {
         associators_[seen.instant].associate(points, pairing, rows_, associations_[i]);
         views_.push_back({seen.instant, seen.camera, points.eye, &associations_[i]});
     }
-    if (cloth_ && (round == stage_.learn[0] || round == stage_.learn[1]))
-        cloth_->learn(associations_);
+    if (cloth_ && round >= stage_.learn_from) cloth_->learn(associations_);
     if (!options_.floor) return;
     for (std::size_t f = 0; f < posed_.size(); ++f) {
         stand_on(level_, posed_[f], *options_.floor, contacts_[f]);
@@ -382,17 +388,60 @@ void Fitter::find_detail(std::span<const Observation> observations, const Scope&
     refine(observed, fine, options, rows, result);
 }
 
+/// Tells of every point that has a hue whether it is skin, after the skin of the face; returns
+/// skin's share of the points, nothing where the face does not tell.
+std::optional<double> Fitter::find_covers(const FitState& state,
+                                          std::vector<Observation>& observations) const {
+    const FitLevel& level = model_.level(1);
+    std::vector<geometry::PointTree> faces;
+    std::vector<std::vector<Vec3f>> normals;
+    for (const body::Pose& pose : state.poses) {
+        PosedLevel posed;
+        pose_level(model_, level, state.shape, pose, posed);
+        std::vector<Vec3f> places;
+        normals.emplace_back();
+        for (std::size_t v = 0; v < level.face.size(); ++v) {
+            if (level.face[v] == 0) continue;
+            places.push_back(posed.positions[v]);
+            normals.back().push_back(posed.normals[v]);
+        }
+        faces.emplace_back(places);
+    }
+    std::vector<Vec2f> of_faces;
+    for (const Observation& one : observations)
+        for (std::size_t i = 0; i < one.hues.size(); ++i) {
+            const auto near = faces[one.instant].nearest(one.points[i]);
+            if (near.squared > kOnFace * kOnFace) continue;
+            if (normals[one.instant][near.index].dot(*one.eye - one.points[i]) <= 0.0f) continue;
+            of_faces.push_back(one.hues[i]);
+        }
+    const auto tone = SkinTone::learn(of_faces);
+    if (!tone) return std::nullopt;
+    std::size_t skin = 0, all = 0;
+    for (Observation& one : observations) {
+        one.covers.assign(one.hues.size(), Cover::unknown);
+        for (std::size_t i = 0; i < one.hues.size(); ++i) {
+            if (!one.hues[i].allFinite()) continue;
+            one.covers[i] = tone->like(one.hues[i]) ? Cover::skin : Cover::cloth;
+            skin += one.covers[i] == Cover::skin ? 1 : 0;
+        }
+        all += one.points.size();
+    }
+    return static_cast<double>(skin) / static_cast<double>(all);
+}
+
 /// What is seen is cloth: the body lies within it, and where cloth is tight in one of the instants
 /// it lies on it; one shape for all instants.
 void Fitter::find_beneath(std::span<const Observation> observations, const Scope& scope,
                           const FitOptions& options, const RowLoop& rows, FitResult& result) {
-    const auto points = fewer(observations, kMediumPoints * scope.instants);
+    auto points = fewer(observations, kMediumPoints * scope.instants);
+    result.skin_share = find_covers(result.state, points);
     std::vector<ObservedPoints> observed(points.begin(), points.end());
     Stage beneath{1, 14, {0.12f, 0.10f}, {0.10f, 0.08f}};
     beneath.along_rays = scope.depth;
     beneath.outline_weight = scope.depth ? kOutlinePixel : 0.0f;
     beneath.dressed = true;
-    beneath.learn = {5, 9};
+    beneath.learn_from = kLetGo;
     beneath.shape_weight = options.dressed_shape_weight;
     if (scope.depth) beneath.empty_weight = 0.0f; // as in the fine stage
     beneath.from = 0.6, beneath.to = 0.9;
@@ -400,7 +449,7 @@ void Fitter::find_beneath(std::span<const Observation> observations, const Scope
     if (!options.use_free_form) return;
     beneath.level = 0;
     beneath.rounds = 3;
-    beneath.learn = {0, 1};
+    beneath.learn_from = 0;
     beneath.reach_m[0] = beneath.reach_m[1], beneath.scale_m[0] = beneath.scale_m[1];
     beneath.from = 0.9, beneath.to = 1.0;
     beneath.free_form = true;

@@ -18,7 +18,7 @@ struct FitOptions {
     std::optional<geometry::Plane> floor; ///< feet that are near it stand on it
     bool dressed = false;                 ///< cloth may lie between skin and points
     ClothGapOptions cloth;                ///< of dressed people
-    double dressed_shape_weight = 0.2;    ///< of the prior beneath clothes
+    double dressed_shape_weight = 0.4;    ///< of the prior beneath clothes
     FreeFormOptions dressed_free_form;    ///< beneath clothes
     bool rough = false;                   ///< stop before the finest surface
     bool use_free_form = true;            ///< move onto detail that the components cannot show
@@ -43,9 +43,10 @@ struct Cancelled {};
 struct FitResult {
     FitState state;
     body::Sex sex = body::Sex::invalid;
-    double rms_m = 0.0;      ///< of the points to the surface, those that have a partner
-    double paired_share = 0; ///< of the points' area
-    double seen_share = 0.0; ///< of the body's area that points stand for
+    double rms_m = 0.0;               ///< of the points to the surface, those that have a partner
+    double paired_share = 0;          ///< of the points' area
+    double seen_share = 0.0;          ///< of the body's area that points stand for
+    std::optional<double> skin_share; ///< of a dressed person's points, when colours tell
     int rounds = 0;
 };
 
@@ -82,6 +83,8 @@ class Fitter {
                      const FitOptions& options, const RowLoop& rows, FitResult& result);
     void find_beneath(std::span<const Observation> observations, const Scope& scope,
                       const FitOptions& options, const RowLoop& rows, FitResult& result);
+    [[nodiscard]] std::optional<double> find_covers(const FitState& state,
+                                                    std::vector<Observation>& observations) const;
     void retry_arms(std::span<ObservedPoints> observed, const FitOptions& options,
                     const RowLoop& rows, FitResult& best);
     [[nodiscard]] body::Sex likelier_sex(const ShapeVector& shape) const;

@@ -4,6 +4,7 @@
 #include "core/random.h"
 #include "geometry/point_tree.h"
 #include "scape_fit/contour.h"
+#include "scape_fit/skin_tone.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -133,6 +134,7 @@ Observation seen(std::shared_ptr<const DepthView> view, std::span<const std::uin
         if (mask[i] == 0 || !points[i].allFinite()) continue;
         out.points.push_back(place * points[i]);
         out.areas.push_back(points[i].z() * points[i].z() * pixel); // across the line of sight
+        if (!view->color.empty()) out.hues.push_back(hue_of(&view->color.pixels[4 * i]));
     }
     out.eye = place.translation();
     out.outline = outline(*view, mask);

@@ -17,6 +17,7 @@ struct DepthView {
     imaging::Intrinsics camera;
     Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
     imaging::DepthImage depth; ///< metres, NaN where unknown
+    imaging::Image color;      ///< of the same pixels, or empty
 
     /// Depth along the camera's axis and pixel of a world point; nothing out of sight.
     struct Sight {
@@ -26,6 +27,9 @@ struct DepthView {
     [[nodiscard]] std::optional<Sight> sight(const Vec3f& point) const;
 };
 
+/// What a point shows, as its colour tells.
+enum class Cover : std::uint8_t { unknown, cloth, skin };
+
 /// Points of a person, metres, world. Rows of all vectors belong together.
 struct Observation {
     std::size_t instant = 0; ///< which pose it shows
@@ -33,6 +37,8 @@ struct Observation {
     std::vector<Vec3f> points;
     std::vector<Vec3f> normals; ///< unit, outwards; empty: the camera is all that is known
     std::vector<float> areas;   ///< of the surface that a point stands for, m^2
+    std::vector<Vec2f> hues;    ///< of the points (skin_tone.h), or none
+    std::vector<Cover> covers;  ///< of the points, or none
     std::vector<Vec3f> outline; ///< unit directions from the eye to the person's outline, or none
     std::optional<Vec3f> eye;   ///< the camera's place: a point is seen from there
     std::shared_ptr<const DepthView> view; ///< of a depth picture: tells what is free space

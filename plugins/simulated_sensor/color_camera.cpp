@@ -1,6 +1,6 @@
 #include "simulated_sensor/color_camera.h"
 
-#include "simulated_sensor/srgb.h"
+#include "imaging/srgb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ std::uint8_t encode(float linear) {
     static const std::vector<std::uint8_t> table = [] {
         std::vector<std::uint8_t> made(kEncodings);
         for (std::size_t i = 0; i < made.size(); ++i)
-            made[i] = static_cast<std::uint8_t>(
-                std::lround(255.0f * srgb_from_linear(static_cast<float>(i) / (kEncodings - 1))));
+            made[i] = static_cast<std::uint8_t>(std::lround(
+                255.0f * imaging::srgb_from_linear(static_cast<float>(i) / (kEncodings - 1))));
         return made;
     }();
     const float clamped = std::clamp(linear, 0.0f, 1.0f);
@@ -30,7 +30,7 @@ float decode(std::uint8_t value) {
     static const std::array<float, 256> table = [] {
         std::array<float, 256> made{};
         for (std::size_t i = 0; i < made.size(); ++i)
-            made[i] = linear_from_srgb(static_cast<float>(i) / 255.0f);
+            made[i] = imaging::linear_from_srgb(static_cast<float>(i) / 255.0f);
         return made;
     }();
     return table[value];

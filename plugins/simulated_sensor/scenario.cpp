@@ -1,7 +1,7 @@
 #include "simulated_sensor/scenario.h"
 
 #include "core/json.h"
-#include "simulated_sensor/srgb.h"
+#include "imaging/srgb.h"
 
 #include <charconv>
 #include <cmath>
@@ -65,7 +65,8 @@ Vec3f color_or(JsonObject& at, const std::string& key, const Vec3f& fallback) {
         throw at.error(key, "'" + text + "' is no colour; write #rrggbb");
     Vec3f out;
     for (int k = 0; k < 3; ++k)
-        out[k] = linear_from_srgb(static_cast<float>(value >> (16 - 8 * k) & 255u) / 255.0f);
+        out[k] =
+            imaging::linear_from_srgb(static_cast<float>(value >> (16 - 8 * k) & 255u) / 255.0f);
     return out;
 }
 

@@ -36,19 +36,24 @@ constexpr std::array kNames{"bust_girth",        "waist_girth", "hip_girth",
                             "neck_girth",        "arm_length",  "neck_to_hip_distance",
                             "inside_leg_length", "stature"};
 
+/// Light, middle and dark; linear.
+const std::array<Vec3f, 3> kSkins{Vec3f(0.78f, 0.48f, 0.35f), Vec3f(0.52f, 0.26f, 0.15f),
+                                  Vec3f(0.16f, 0.065f, 0.033f)};
+
 struct Settings {
     fs::path model, cases, json;
     double period = 1.1;
     std::string noise = "usual";
     std::string only;
     std::size_t count = 1000;
-    bool compare = true;
+    bool compare = true, color = true;
     fit::FitOptions fit = fit::options_for_pictures(4, kPoses);
 };
 
 sensor::Scenario scenario_of(const Settings& settings, std::uint64_t seed) {
     sensor::Scenario out = empty_room();
     out.seed = seed;
+    out.color = settings.color;
     out.frames = kPoses;
     out.frames_per_second = 1.0 / settings.period;
     add_cameras(out, 4, settings.noise);
@@ -145,6 +150,7 @@ struct Evaluation {
         const auto truth = measurer.measure(rest.positions, rest.skeleton);
         sensor::Scenario scenario = scenario_of(settings, seed);
         scenario.people.push_back(person_of(sensor::BodyKind::surfaces, folder / "cache"));
+        scenario.people.back().skin = kSkins[seed % kSkins.size()];
         sensor::Simulator simulator(std::move(scenario), &rows_on_all_cores);
         Seen seen;
         std::vector<toile::geometry::TriangleMesh> bare;
@@ -219,7 +225,9 @@ int main(int argc, char** argv) {
     app.add_option("--only", settings.only, "Cases whose names contain this");
     app.add_option("--json", settings.json, "Gets all figures");
     app.add_flag("!--dressed-only", settings.compare, "No fits to compare with");
-    app.add_option("--alike", settings.fit.cloth.alike);
+    app.add_flag("!--no-color", settings.color, "Depth alone");
+    app.add_option("--unknown", settings.fit.cloth.unknown_weight);
+    app.add_option("--half", settings.fit.cloth.half_weight_m);
     app.add_option("--gap-noise", settings.fit.cloth.noise_m);
     app.add_option("--weight", settings.fit.dressed_shape_weight);
     CLI11_PARSE(app, argc, argv);

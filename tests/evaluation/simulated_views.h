@@ -54,6 +54,7 @@ inline scape_fit::ObservedPerson observe(simulated_sensor::Simulator& simulator,
         view->camera = simulator.camera(c).intrinsics();
         view->world_from_camera = simulator.camera(c).reported_pose();
         view->depth = simulator.camera(c).depth();
+        view->color = simulator.picture(c);
         views.push_back(view);
     }
     return scape_fit::observe_person(views, instant);

@@ -8,15 +8,18 @@ namespace {
 
 constexpr std::size_t kInstants = 3;
 
+bool covered(std::size_t vertex) {
+    const body::Part part = adult().space().model().parts[vertex];
+    return part == body::Part::torso || part == body::Part::pelvis;
+}
+
 /// The person in something like a wide shirt: 5 to 45 mm off the trunk, other folds each time.
 geometry::TriangleMesh dressed(const Somebody& who, std::size_t instant) {
-    const auto& parts = adult().space().model().parts;
     std::vector<Vec3f> normals(who.surface.positions.size());
     geometry::vertex_normals(who.surface.positions, who.surface.triangles, normals);
     geometry::TriangleMesh out = who.surface;
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        const bool trunk = parts[v] == body::Part::torso || parts[v] == body::Part::pelvis;
-        if (!trunk) continue;
+        if (!covered(v)) continue;
         const Vec3f& p = who.surface.positions[v];
         const float fold = std::sin(20.0f * p.y() + 2.0f * std::atan2(p.x(), p.z()) +
                                     2.1f * static_cast<float>(instant));
@@ -26,7 +29,7 @@ geometry::TriangleMesh dressed(const Somebody& who, std::size_t instant) {
 }
 
 /// Fits somebody in the shirt, seen from four sides.
-const FitSession& fit_dressed(bool told) {
+const FitSession& fit_dressed(bool told, bool colors = false) {
     static FitSession one(adult());
     const Somebody who;
     std::vector<FitCamera> cameras;
@@ -35,12 +38,18 @@ const FitSession& fit_dressed(bool told) {
         cameras.push_back(camera_at(Vec3f(2.4f * std::sin(angle), 1.0f, 2.4f * std::cos(angle))));
     }
     one.begin(cameras);
+    std::vector<std::uint8_t> cloth;
+    for (std::size_t v = 0; v < who.surface.positions.size(); ++v)
+        cloth.push_back(covered(v) ? 1 : 0);
     for (std::size_t f = 0; f < kInstants; ++f) {
         const auto shown = dressed(who, f);
         std::vector<imaging::DepthImage> depths;
-        for (const FitCamera& camera : cameras)
+        std::vector<imaging::Image> pictures;
+        for (const FitCamera& camera : cameras) {
             depths.push_back(depth_of(camera, &shown));
-        one.add_instant(std::move(depths));
+            if (colors) pictures.push_back(color_of(camera, shown, cloth));
+        }
+        one.add_instant(std::move(depths), std::move(pictures));
     }
     SessionOptions options;
     options.dressed = told;
@@ -80,6 +89,21 @@ TEST(ClothFit, TheBodyDoesNotBulgeWithItsClothes) {
     EXPECT_FALSE(found.report().contains("looseness")); // of the fit that was told of no clothes
 }
 
+TEST(ClothFit, WhatHasTheColourOfTheFaceIsNotDrawnIn) {
+    const Somebody who;
+    const body::Measurer measurer(adult().space().model());
+    const auto rest = rest_shape(adult(), who.shape);
+    const auto truth = measurer.measure(rest.positions, rest.skeleton);
+    EXPECT_FALSE(fit_dressed(true).report().contains("skin_share"));
+    const FitSession& found = fit_dressed(true, true);
+    const double share = found.report().at("skin_share").get<double>();
+    EXPECT_GT(share, 0.4);
+    EXPECT_LT(share, 0.7);
+    const auto beneath = found.measurements();
+    for (const char* name : {"calf_girth", "knee_girth", "upper_arm_girth"})
+        EXPECT_NEAR(girth(beneath, name), girth(truth, name), 0.008) << name;
+}
+
 std::uint32_t nearest_vertex(const FitLevel& level, body::Joint joint) {
     const Vec3f place = adult().space().model().skeleton.rest(joint);
     std::uint32_t best = 0;
@@ -89,25 +113,51 @@ std::uint32_t nearest_vertex(const FitLevel& level, body::Joint joint) {
     return best;
 }
 
-TEST(ClothGaps, LooseClothIsBelievedLessThanTightClothAndSkinNeverOutsideOfIt) {
-    const FitLevel& level = adult().level(1);
-    ClothGaps gaps(level, {});
-    // One patch with cloth 40 mm off, all others on the skin.
-    const std::uint32_t loose = nearest_vertex(level, body::Joint::spine);
-    Association pairs;
+/// Pairs of a whole body at an instant: cloth 40 mm off around a place, else on the skin.
+Association pairs_around(const FitLevel& level, const Vec3f& place) {
+    Association out;
     for (std::uint32_t v = 0; v < level.vertices.size(); ++v) {
         VertexPair pair;
         pair.vertex = v;
         pair.weight = pair.observed = level.areas[v];
-        pair.distance = (level.mean[v] - level.mean[loose]).norm() < 0.2f ? -0.04f : -0.001f;
-        pairs.pairs.push_back(pair);
+        pair.distance = (level.mean[v] - place).norm() < 0.2f ? -0.04f : -0.001f;
+        out.pairs.push_back(pair);
     }
+    return out;
+}
+
+TEST(ClothGaps, LooseClothIsBelievedLessThanTightClothAndSkinNeverOutsideOfIt) {
+    const FitLevel& level = adult().level(1);
+    ClothGaps gaps(level, {});
+    const std::uint32_t loose = nearest_vertex(level, body::Joint::spine);
+    const std::uint32_t knee = nearest_vertex(level, body::Joint::left_lower_leg);
+    const Association pairs = pairs_around(level, level.mean[loose]);
     gaps.learn({&pairs, 1});
     EXPECT_GT(gaps.gap(loose), 0.03f);
     EXPECT_LT(gaps.weight(loose, -0.04f), 0.01f);
     EXPECT_EQ(gaps.weight(loose, 0.01f), 1.0f); // skin outside of the cloth
-    const std::uint32_t knee = nearest_vertex(level, body::Joint::left_lower_leg);
     EXPECT_EQ(gaps.weight(knee, -0.01f), 1.0f);
+}
+
+TEST(ClothGaps, WhatHasTheColourOfSkinIsBare) {
+    const FitLevel& level = adult().level(1);
+    ClothGaps gaps(level, {});
+    const std::uint32_t belly = nearest_vertex(level, body::Joint::spine);
+    const std::uint32_t knee = nearest_vertex(level, body::Joint::left_lower_leg);
+    Association pairs = pairs_around(level, level.mean[knee]);
+    for (VertexPair& pair : pairs.pairs) {
+        const bool leg = level.mean[pair.vertex].y() < level.mean[knee].y() + 0.15f;
+        // One pixel in ten is taken for the other.
+        pair.bare = (leg ? 0.9f : 0.1f) * pair.observed;
+        pair.covered = pair.observed - pair.bare;
+    }
+    EXPECT_LT(gaps.weight(knee, -0.04f), 0.1f); // nothing is known yet
+    gaps.find_bare({&pairs, 1});
+    EXPECT_TRUE(gaps.bare(knee));
+    EXPECT_FALSE(gaps.bare(belly));
+    EXPECT_EQ(gaps.weight(knee, -0.04f), 1.0f);
+    gaps.learn({&pairs, 1});
+    EXPECT_EQ(gaps.weight(knee, -0.04f), 1.0f);
 }
 
 } // namespace

@@ -108,6 +108,11 @@ TEST(DepthFit, PicturesWithoutReadingsAreRefused) {
     EXPECT_ERROR(session().fit({}, &serial_rows), "no reading within");
     nothing.width = 3;
     EXPECT_ERROR(session().add_instant({nothing}), "camera's size");
+    nothing.width = kWidth;
+    imaging::Image small;
+    small.width = small.height = 1;
+    small.pixels.assign(4, 0);
+    EXPECT_ERROR(session().add_instant({nothing}, {small}), "depth picture's size");
     session().begin({});
     EXPECT_ERROR(session().fit({}, &serial_rows), "nothing was fed");
 }

@@ -48,4 +48,27 @@ inline imaging::DepthImage depth_of(const FitCamera& camera, const geometry::Tri
     return out;
 }
 
+/// The same camera's colours: skin, cloth where `cloth` (one for each vertex of the person) says
+/// so, walls of grey.
+inline imaging::Image color_of(const FitCamera& camera, const geometry::TriangleMesh& person,
+                               std::span<const std::uint8_t> cloth) {
+    constexpr std::array<std::uint8_t, 4> kSkin{205, 152, 122, 255}, kCloth{70, 90, 150, 255},
+        kWall{170, 170, 170, 255};
+    const geometry::NearestSurface surface(person.positions, person.triangles);
+    imaging::Image out;
+    out.width = kWidth;
+    out.height = kHeight;
+    const Eigen::Isometry3f place = camera.world_from_camera->cast<float>();
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const auto ray = imaging::unproject(camera.intrinsics, Eigen::Vector2d(x, y), 1.0);
+            const auto hit =
+                surface.first_hit(place.translation(), place.linear() * ray->cast<float>());
+            const bool covered = hit && cloth[person.triangles[hit->triangle][0]] != 0;
+            const auto& color = hit ? (covered ? kCloth : kSkin) : kWall;
+            out.pixels.insert(out.pixels.end(), color.begin(), color.end());
+        }
+    return out;
+}
+
 } // namespace toile::scape_fit

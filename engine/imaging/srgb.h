@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace toile::simulated_sensor {
+namespace toile::imaging {
 
 /// Both within [0, 1].
 inline float linear_from_srgb(float v) {
@@ -13,4 +13,4 @@ inline float srgb_from_linear(float v) {
     return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
 }
 
-} // namespace toile::simulated_sensor
+} // namespace toile::imaging
