@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "imaging/capture_folder.h"
+#include "imaging/oni_writer.h"
 #include "pipeline/sensor_source.h"
 
 #include <fstream>
@@ -69,6 +70,64 @@ class CameraRecorder {
     std::int64_t first_ns_ = 0;
 };
 
+/// A file that OpenNI plays.
+class OniRecorder {
+  public:
+    OniRecorder(pipeline::SensorSource& source, const fs::path& file)
+        : source_(source),
+          writer_(file, source.streams().front().depth, source.streams().front().has_color,
+                  1.0 / std::max(1e-3, source.streams().front().frame_period_s)) {
+        const imaging::Intrinsics& camera = source.streams().front().depth;
+        const Eigen::Vector2d middle(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
+        if ((middle - Eigen::Vector2d(camera.cx, camera.cy)).norm() > kOffMiddle ||
+            camera.distorted())
+            log::warning(file.string() +
+                         ": an .oni file keeps a camera's field of view alone; its "
+                         "principal point or distortion is lost, a folder keeps it");
+        if (source.streams().front().world_from_camera)
+            log::warning(file.string() + ": an .oni file does not say where the camera stands");
+    }
+
+    bool record() {
+        if (source_.ended(0) || !source_.next(0, frame_)) return false;
+        if (writer_.frame_count() == 0) first_ns_ = frame_.timestamp_ns;
+        writer_.add(1e-9 * static_cast<double>(frame_.timestamp_ns - first_ns_), frame_.depth,
+                    frame_.color.empty() ? nullptr : &frame_.color);
+        return true;
+    }
+    void finish() { writer_.finish(); }
+    [[nodiscard]] std::uint32_t frame_count() const { return writer_.frame_count(); }
+
+  private:
+    static constexpr double kOffMiddle = 2.0; // pixels
+    pipeline::SensorSource& source_;
+    imaging::OniWriter writer_;
+    pipeline::SensorFrame frame_;
+    std::int64_t first_ns_ = 0;
+};
+
+void record_oni(const RecordOptions& options, pipeline::SensorSource& source) {
+    if (source.streams().size() != 1)
+        throw UsageError("record --out '" + options.out + "': an .oni file holds one camera, and " +
+                         options.source + " has " + std::to_string(source.streams().size()) +
+                         "; name a folder");
+    OniRecorder recorder(source, options.out);
+    RunProgress progress;
+    while (!source.ended(0) && !host::interrupt_flag()) {
+        if (options.frames > 0 && recorder.frame_count() >= options.frames) break;
+        if (recorder.record())
+            progress.frame();
+        else if (!source.ended(0))
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    recorder.finish();
+    if (recorder.frame_count() == 0) {
+        fs::remove(options.out);
+        throw Error(options.source + ": gave no frame");
+    }
+    std::cout << options.out << ": " << recorder.frame_count() << " frames of 1 camera\n";
+}
+
 /// DIR/truth: the people's true surfaces, frame by frame, as a surface cache.
 class SurfaceRecorder {
   public:
@@ -112,9 +171,6 @@ class SurfaceRecorder {
 };
 
 void record(const RecordOptions& options, const GlobalOptions& global) {
-    if (fs::path(options.out).extension() == ".oni")
-        throw UsageError("record --out '" + options.out +
-                         "': .oni files are not written yet; name a folder");
     host::catch_interrupts();
     host::Services services(global.threads);
     host::RegistryOptions where;
@@ -125,6 +181,10 @@ void record(const RecordOptions& options, const GlobalOptions& global) {
                                   limits_of(global, services, kSensedScene, options.realtime), job);
 
     const fs::path out(options.out);
+    if (out.extension() == ".oni") {
+        record_oni(options, source);
+        return;
+    }
     const auto count = static_cast<std::uint32_t>(source.streams().size());
     std::vector<std::unique_ptr<CameraRecorder>> cameras;
     for (std::uint32_t i = 0; i < count; ++i)
@@ -161,19 +221,23 @@ void add_record_commands(CLI::App& app, const GlobalOptions& global) {
     const auto options = std::make_shared<RecordOptions>();
     command
         ->add_option("--source", options->source,
-                     "Where the pictures come from: simulated:SCENARIO.json, capture:DIR")
+                     "Where the pictures come from: openni2: (a camera, its number or FILE.oni), "
+                     "capture:DIR, simulated:SCENARIO.json")
         ->type_name("URI")
         ->required();
     command
-        ->add_option("--out", options->out,
-                     "Capture folder; of several cameras each gets a folder below it")
-        ->type_name("DIR")
+        ->add_option(
+            "--out", options->out,
+            "Capture folder; of several cameras each gets a folder below it. Or a file that "
+            "OpenNI plays, of one camera")
+        ->type_name("DIR|FILE.oni")
         ->required();
     command->add_option("--frames", options->frames, "Stops after this many");
     command->add_flag("--realtime", options->realtime, "Keeps to the source's time");
     command->add_flag("!--no-surfaces", options->surfaces,
                       "Of a simulated sensor: leaves out the true surfaces (DIR/truth)");
-    command->footer("Example: toile record --source simulated:turn.json --out captures/turn");
+    command->footer("Example: toile record --source openni2: --frames 300 --out captures/anna\n"
+                    "         toile record --source capture:captures/anna --out anna.oni");
     command->callback([options, &global] { record(*options, global); });
 }
 

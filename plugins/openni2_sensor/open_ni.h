@@ -1,0 +1,40 @@
+// OpenNI2 as a whole: started, and asked which cameras there are.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace toile::openni2_sensor {
+
+/// OpenNI2 runs as long as somebody holds one of these; one for the process.
+class OpenNiLibrary {
+  public:
+    /// \throw Error when OpenNI2 cannot start [any thread]
+    [[nodiscard]] static std::shared_ptr<OpenNiLibrary> acquire();
+    OpenNiLibrary(const OpenNiLibrary&) = delete;
+    OpenNiLibrary& operator=(const OpenNiLibrary&) = delete;
+    ~OpenNiLibrary();
+
+  private:
+    OpenNiLibrary();
+};
+
+struct DeviceName {
+    std::string uri, vendor, name;
+};
+
+/// Cameras that OpenNI2's drivers see now, in their order; no recordings.
+[[nodiscard]] std::vector<DeviceName> list_devices(const OpenNiLibrary& library);
+
+/// What a source URI means, without its scheme: the first device (""), one by its number ("1"), a
+/// recording ("FILE.oni"), or OpenNI2's own URI of a device.
+struct Address {
+    std::string uri; ///< as OpenNI2 wants it
+    bool recording = false;
+};
+/// \throw Error: no such device (names those that there are, or what may be missing), no such file,
+/// or a file that is no recording
+[[nodiscard]] Address resolve(const std::string& source, const OpenNiLibrary& library);
+
+} // namespace toile::openni2_sensor
