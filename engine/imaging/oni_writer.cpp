@@ -209,7 +209,9 @@ void OniWriter::finish() {
     for (std::uint32_t node = 0; node < node_count(); ++node) {
         tables[node] = static_cast<std::uint64_t>(out_.tellp());
         Bytes entries;
-        entries.add(std::uint64_t{0}).add(std::uint32_t{0}).add(std::uint64_t{0}); // before the first
+        entries.add(std::uint64_t{0})
+            .add(std::uint32_t{0})
+            .add(std::uint64_t{0}); // before the first
         for (const auto& [time_us, place] : index_[node])
             entries.add(time_us).add(std::uint32_t{1}).add(place);
         put(Bytes::record(seek_table, node, {}, entries.size()));

@@ -44,8 +44,8 @@ class OniWriter {
     std::uint32_t count_ = 0;
     std::uint64_t last_us_ = 0;
     double begin_s_ = 0.0;
-    std::array<std::uint64_t, 2> last_record_{};  ///< where each node's last data stand
-    std::array<std::uint64_t, 2> node_record_{};  ///< where each node is introduced
+    std::array<std::uint64_t, 2> last_record_{}; ///< where each node's last data stand
+    std::array<std::uint64_t, 2> node_record_{}; ///< where each node is introduced
     std::array<std::vector<std::array<std::uint64_t, 2>>, 2> index_; ///< time and place of frames
     std::vector<std::uint8_t> payload_;
 };

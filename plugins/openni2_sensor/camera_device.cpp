@@ -63,7 +63,8 @@ CameraDevice::CameraDevice(std::shared_ptr<OpenNiLibrary> library, const Address
       recording_(address.recording), live_(options.live) {
     openni::Device& device = streams_->device;
     if (device.open(address.uri.c_str()) != openni::STATUS_OK)
-        throw failed(address.uri, recording_ ? "the recording cannot be played" : "cannot be opened");
+        throw failed(address.uri,
+                     recording_ ? "the recording cannot be played" : "cannot be opened");
     if (!device.hasSensor(openni::SENSOR_DEPTH) ||
         streams_->depth.create(device, openni::SENSOR_DEPTH) != openni::STATUS_OK)
         throw failed(address.uri, "gives no depth");
@@ -84,7 +85,9 @@ CameraDevice::CameraDevice(std::shared_ptr<OpenNiLibrary> library, const Address
 
 CameraDevice::~CameraDevice() = default;
 
-bool CameraDevice::has_color() const noexcept { return streams_->color.isValid(); }
+bool CameraDevice::has_color() const noexcept {
+    return streams_->color.isValid();
+}
 
 /// Sets the device up and learns what its pictures mean.
 void CameraDevice::describe(const Address& address, const DeviceOptions& options) {
@@ -105,7 +108,8 @@ void CameraDevice::describe(const Address& address, const DeviceOptions& options
     const double across = depth.getHorizontalFieldOfView();
     const double up = depth.getVerticalFieldOfView();
     guessed_view_ = !(across > 0.1 && across < 3.0 && up > 0.1 && up < 3.0);
-    intrinsics_.fx = 0.5 * intrinsics_.width / std::tan(0.5 * (guessed_view_ ? kUsualView : across));
+    intrinsics_.fx =
+        0.5 * intrinsics_.width / std::tan(0.5 * (guessed_view_ ? kUsualView : across));
     intrinsics_.fy = guessed_view_ ? intrinsics_.fx : 0.5 * intrinsics_.height / std::tan(0.5 * up);
     intrinsics_.cx = 0.5 * (intrinsics_.width - 1);
     intrinsics_.cy = 0.5 * (intrinsics_.height - 1);
@@ -210,8 +214,9 @@ void CameraDevice::take_color(SensedFrame& out) {
         const auto* row = bytes + y * static_cast<std::size_t>(frame.getStrideInBytes());
         for (std::size_t x = 0; x < columns; ++x)
             std::copy_n(row + 3 * x, 3,
-                        out.color.begin() + static_cast<std::ptrdiff_t>(
-                                                4 * (y * width + (flip_color_ ? width - 1 - x : x))));
+                        out.color.begin() +
+                            static_cast<std::ptrdiff_t>(
+                                4 * (y * width + (flip_color_ ? width - 1 - x : x))));
     }
 }
 

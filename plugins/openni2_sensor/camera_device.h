@@ -10,15 +10,16 @@
 namespace toile::openni2_sensor {
 
 struct DeviceOptions {
-    bool mirrored = false;          ///< pictures as a mirror shows them
-    bool recording_registered = true; ///< colour of recordings is registered to depth: they do not say
-    bool live = false;              ///< recordings keep to their own pace
+    bool mirrored = false; ///< pictures as a mirror shows them
+    bool recording_registered =
+        true;          ///< colour of recordings is registered to depth: they do not say
+    bool live = false; ///< recordings keep to their own pace
 };
 
 struct SensedFrame {
     std::uint32_t sequence = 0;
-    std::int64_t timestamp_ns = 0; ///< the device's clock
-    std::vector<float> depth;      ///< (width * height) metres, NaN where unknown
+    std::int64_t timestamp_ns = 0;   ///< the device's clock
+    std::vector<float> depth;        ///< (width * height) metres, NaN where unknown
     std::vector<std::uint8_t> color; ///< (width * height * 4) sRGB, or empty
 };
 
@@ -39,8 +40,8 @@ class CameraDevice {
     [[nodiscard]] bool guessed_view() const noexcept { return guessed_view_; }
 
     enum class Step : std::uint8_t { invalid, frame, nothing_new, over, lost };
-    /// Takes what is there: a live device's newest picture, a recording's next one (live: when it is
-    /// due). `lost`: unplugged. Allocates nothing after the first frame.
+    /// Takes what is there: a live device's newest picture, a recording's next one (live: when it
+    /// is due). `lost`: unplugged. Allocates nothing after the first frame.
     Step poll(SensedFrame& out);
 
   private:

@@ -34,7 +34,8 @@ void check_recording(const fs::path& file) {
 
 std::string what_there_is(const std::vector<DeviceName>& devices) {
     if (devices.empty())
-        return "OpenNI2 sees no camera: connect one; its driver must stand in OpenNI2/Drivers beside "
+        return "OpenNI2 sees no camera: connect one; its driver must stand in OpenNI2/Drivers "
+               "beside "
                "libOpenNI2 (Kinects need one of their own), and udev must let this user read the "
                "USB device";
     std::string out = "there are:";
@@ -59,11 +60,12 @@ std::shared_ptr<OpenNiLibrary> OpenNiLibrary::acquire() {
 
 OpenNiLibrary::OpenNiLibrary() {
     if (openni::OpenNI::initialize() != openni::STATUS_OK)
-        throw Error(std::string("OpenNI2 does not start: ") +
-                    openni::OpenNI::getExtendedError());
+        throw Error(std::string("OpenNI2 does not start: ") + openni::OpenNI::getExtendedError());
 }
 
-OpenNiLibrary::~OpenNiLibrary() { openni::OpenNI::shutdown(); }
+OpenNiLibrary::~OpenNiLibrary() {
+    openni::OpenNI::shutdown();
+}
 
 std::vector<DeviceName> list_devices(const OpenNiLibrary&) {
     openni::Array<openni::DeviceInfo> found;
@@ -78,14 +80,15 @@ std::vector<DeviceName> list_devices(const OpenNiLibrary&) {
 }
 
 Address resolve(const std::string& source, const OpenNiLibrary& library) {
-    const bool names_file =
-        fs::path(source).extension() == ".oni" || fs::is_regular_file(source);
+    const bool names_file = fs::path(source).extension() == ".oni" || fs::is_regular_file(source);
     if (names_file) {
         check_recording(source);
         return {source, true};
     }
     const auto devices = list_devices(library);
-    const std::size_t index = source.empty() ? 0 : is_number(source) ? std::stoul(source) : devices.size();
+    const std::size_t index = source.empty()      ? 0
+                              : is_number(source) ? std::stoul(source)
+                                                  : devices.size();
     if (source.empty() || is_number(source)) {
         if (index < devices.size()) return {devices[index].uri, false};
         throw Error("openni2:" + source + ": no such camera; " + what_there_is(devices));

@@ -47,7 +47,8 @@ void OpenNiSensor::look_for_device() {
         const imaging::Intrinsics& now = device_->intrinsics();
         if (now.width != intrinsics_.width || now.height != intrinsics_.height ||
             device_->has_color() != has_color_) {
-            log_("openni2:" + address_.uri + " came back with other pictures; start anew to use it");
+            log_("openni2:" + address_.uri +
+                 " came back with other pictures; start anew to use it");
             device_.reset();
             looked_ = Clock::now() + std::chrono::hours(1);
             return;
@@ -83,7 +84,8 @@ bool OpenNiSensor::accept() {
     } else if (fresh_) { // back again: what the clock says was missed
         const std::int64_t away = std::max<std::int64_t>(
             period_ns,
-            std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - last_seen_).count());
+            std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - last_seen_)
+                .count());
         number_ += static_cast<std::uint32_t>(std::max<std::int64_t>(1, away / period_ns));
         time_ns_ += away;
     } else {

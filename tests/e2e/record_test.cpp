@@ -163,12 +163,12 @@ constexpr const char* kOneCamera = R"({"schema": 1, "frames": 4, "noise": {"pres
 TEST_F(RecordTest, AnOniFileThatOpenNiPlaysGivesTheSamePictures) {
     ASSERT_EQ(record(kOneCamera, "direct").status, 0);
     const auto written = record(kOneCamera, "played.oni");
-    ASSERT_EQ(written.status, 0) << written.error;
-    EXPECT_THAT(written.error, HasSubstr("does not say where the camera stands"));
+    ASSERT_EQ(written.status, 0) << written.output;
+    EXPECT_THAT(written.output, HasSubstr("does not say where the camera stands"));
     const auto played =
         run_toile({"record", "--source", "openni2:" + (folder_ / "played.oni").string(), "--out",
                    (folder_ / "played").string()});
-    ASSERT_EQ(played.status, 0) << played.error;
+    ASSERT_EQ(played.status, 0) << played.output;
     const auto direct = contents(folder_ / "direct"), back = contents(folder_ / "played");
     std::size_t pictures = 0;
     for (const auto& [name, bytes] : back) {
@@ -180,10 +180,10 @@ TEST_F(RecordTest, AnOniFileThatOpenNiPlaysGivesTheSamePictures) {
     // It is not written over, and one file holds one camera.
     const auto again = record(kOneCamera, "played.oni");
     EXPECT_EQ(again.status, 1);
-    EXPECT_THAT(again.error, HasSubstr("is there already"));
+    EXPECT_THAT(again.output, HasSubstr("is there already"));
     const auto two = record(kTwoCameras, "two.oni");
     EXPECT_EQ(two.status, 2);
-    EXPECT_THAT(two.error, HasSubstr("holds one camera"));
+    EXPECT_THAT(two.output, HasSubstr("holds one camera"));
     EXPECT_FALSE(fs::exists(folder_ / "two.oni"));
 }
 
@@ -191,11 +191,11 @@ TEST_F(RecordTest, ACameraThatIsNotThereIsExplained) {
     const auto missing =
         run_toile({"record", "--source", "openni2:99", "--out", (folder_ / "x").string()});
     EXPECT_EQ(missing.status, 1);
-    EXPECT_THAT(missing.error, HasSubstr("no such camera"));
+    EXPECT_THAT(missing.output, HasSubstr("no such camera"));
     const auto file =
         run_toile({"record", "--source", "openni2:nothing.oni", "--out", (folder_ / "x").string()});
     EXPECT_EQ(file.status, 1);
-    EXPECT_THAT(file.error, HasSubstr("nothing.oni: there is no such recording"));
+    EXPECT_THAT(file.output, HasSubstr("nothing.oni: there is no such recording"));
     EXPECT_FALSE(fs::exists(folder_ / "x"));
 }
 

@@ -1,4 +1,5 @@
-// The real OpenNI2 library, with cameras of a driver that tests know (tests/driver), and recordings.
+// The real OpenNI2 library, with cameras of a driver that tests know (tests/driver), and
+// recordings.
 #include "driver/test_pictures.h"
 #include "imaging/oni_writer.h"
 #include "openni2_sensor/openni_sensor.h"
@@ -44,8 +45,8 @@ int shown_number(const SensedFrame& frame, bool mirrored = false) {
         bool same = true;
         for (int y = 0; y < kHeight && same; ++y)
             for (int x = 0; x < kWidth && same; ++x) {
-                const float metres =
-                    frame.depth[static_cast<std::size_t>(y * kWidth + (mirrored ? kWidth - 1 - x : x))];
+                const float metres = frame.depth[static_cast<std::size_t>(
+                    y * kWidth + (mirrored ? kWidth - 1 - x : x))];
                 const std::uint16_t true_mm = depth_at(x, y, number);
                 same = true_mm == 0 ? std::isnan(metres)
                                     : std::lround(1000.0f * metres) == long{true_mm};
@@ -98,7 +99,8 @@ TEST(OpenNiSensor, CamerasAreOpenedByNumberAndByUri) {
         OpenNiSensor sensor(source, {}, log_to_heard());
         EXPECT_TRUE(wait_for_frame(sensor)) << source;
     }
-    EXPECT_ERROR(OpenNiSensor("7", {}, log_to_heard()), "[1] Toile Test camera (toile-test:second)");
+    EXPECT_ERROR(OpenNiSensor("7", {}, log_to_heard()),
+                 "[1] Toile Test camera (toile-test:second)");
     EXPECT_ERROR(OpenNiSensor("usb:nowhere", {}, log_to_heard()), "no such camera");
 }
 
@@ -217,8 +219,7 @@ TEST(OniRecording, KeepsToItsOwnPaceWhereWished) {
     OpenNiSensor sensor(record(folder.path(), false), options, log_to_heard());
     const auto began = std::chrono::steady_clock::now();
     int frames = 0;
-    while (!sensor.over() &&
-           std::chrono::steady_clock::now() - began < std::chrono::seconds(10)) {
+    while (!sensor.over() && std::chrono::steady_clock::now() - began < std::chrono::seconds(10)) {
         if (sensor.poll()) ++frames;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
