@@ -1,4 +1,5 @@
-// A decision forest over depth differences: what class does a pixel belong to (Shotton et al. 2011).
+// A decision forest over depth differences: what class does a pixel belong to (Shotton et al.
+// 2011).
 //
 // Depths are whole millimetres; offsets are millimetres in the plane of the asked pixel, so that a
 // forest serves any camera and distance. Whole numbers throughout: the same answer everywhere.
@@ -20,7 +21,7 @@ inline constexpr int kFar_mm = 10000;
 struct DepthView {
     int width = 0;
     int height = 0;
-    float focal_px = 0.0f;         ///< of both axes
+    float focal_px = 0.0f;             ///< of both axes
     const std::uint16_t* mm = nullptr; ///< (width * height)
 };
 
@@ -39,11 +40,12 @@ struct ForestNode {
     DepthFeature feature;
     std::int16_t threshold = 0;
     std::int16_t reserved = 0;
-    std::int32_t child = 0; ///< node, always behind this one; below 0: leaf ~child; 0: not grown yet
+    std::int32_t child =
+        0; ///< node, always behind this one; below 0: leaf ~child; 0: not grown yet
 };
 
 struct ForestTree {
-    std::vector<ForestNode> nodes;     ///< the first is the root
+    std::vector<ForestNode> nodes;    ///< the first is the root
     std::vector<std::uint8_t> leaves; ///< (leaves * classes) share of each class, 255 = all
 };
 

@@ -50,8 +50,8 @@ std::uint64_t fold(std::uint64_t sum, std::uint64_t value) {
 /// Tells one training from another.
 std::uint64_t fingerprint(const TrainingSet& set, const TrainerOptions& o) {
     std::uint64_t sum = fold(o.seed, set.frame_count());
-    for (const int value : {o.class_count, o.tree_count, o.depth, o.candidates, o.thresholds,
-                            o.reach_mm})
+    for (const int value :
+         {o.class_count, o.tree_count, o.depth, o.candidates, o.thresholds, o.reach_mm})
         sum = fold(sum, static_cast<std::uint64_t>(value));
     sum = fold(fold(sum, o.min_samples), o.split_samples);
     for (const Sample& s : set.samples())
@@ -127,8 +127,8 @@ class Trainer {
         std::int32_t at = 0;
         while (nodes[static_cast<std::size_t>(at)].child > 0) {
             const ForestNode& node = nodes[static_cast<std::size_t>(at)];
-            at = node.child +
-                 (feature_value(node.feature, view, s.x, s.y) < node.threshold ? 0 : 1);
+            at =
+                node.child + (feature_value(node.feature, view, s.x, s.y) < node.threshold ? 0 : 1);
         }
         return nodes[static_cast<std::size_t>(at)].child < 0 ? -1 : at;
     }
@@ -192,9 +192,9 @@ class Trainer {
         std::vector<std::pair<int, std::uint32_t>> values(used); // feature, class
         for (std::size_t i = 0; i < used; ++i) {
             const Sample& s = sample(samples[i * samples.size() / used]);
-            values[i] = {std::clamp(feature_value(feature, set_.frame(s.frame), s.x, s.y), -32767,
-                                    32767),
-                         s.label};
+            values[i] = {
+                std::clamp(feature_value(feature, set_.frame(s.frame), s.x, s.y), -32767, 32767),
+                s.label};
         }
         std::sort(values.begin(), values.end());
         return best_threshold(values);
@@ -209,10 +209,9 @@ class Trainer {
         Split best;
         std::size_t at = 0;
         for (int t = 1; t <= options_.thresholds; ++t) {
-            const int threshold =
-                values[values.size() * static_cast<std::size_t>(t) /
-                       (static_cast<std::size_t>(options_.thresholds) + 1)]
-                    .first;
+            const int threshold = values[values.size() * static_cast<std::size_t>(t) /
+                                         (static_cast<std::size_t>(options_.thresholds) + 1)]
+                                      .first;
             for (; at < values.size() && values[at].first < threshold; ++at) {
                 ++below[values[at].second];
                 --above[values[at].second];
@@ -238,17 +237,15 @@ class Trainer {
                       const std::size_t n = begin + i / candidates;
                       if (!may_split(level.samples(n))) continue;
                       const auto candidate = static_cast<int>(i % candidates);
-                      splits[i] =
-                          try_feature(draw(level.nodes[n], candidate), level.samples(n));
+                      splits[i] = try_feature(draw(level.nodes[n], candidate), level.samples(n));
                   }
               });
         for (std::size_t n = begin; n < end; ++n) {
             const auto mine = std::span(splits).subspan((n - begin) * candidates, candidates);
-            const auto best = std::max_element(
-                mine.begin(), mine.end(),
-                [](const Split& a, const Split& b) { return a.gain < b.gain; });
-            finish(level.nodes[n], level.samples(n), *best,
-                   static_cast<int>(best - mine.begin()));
+            const auto best =
+                std::max_element(mine.begin(), mine.end(),
+                                 [](const Split& a, const Split& b) { return a.gain < b.gain; });
+            finish(level.nodes[n], level.samples(n), *best, static_cast<int>(best - mine.begin()));
         }
     }
 

@@ -41,11 +41,11 @@ class TrainingSet {
 struct TrainerOptions {
     int class_count = 0;
     int tree_count = 3;
-    int depth = 18;               ///< levels of questions
-    int candidates = 400;         ///< features tried at a node
-    int thresholds = 20;          ///< tried for each
-    int reach_mm = 1000;          ///< largest offset along an axis
-    std::uint32_t min_samples = 20; ///< a node with fewer becomes a leaf
+    int depth = 18;                     ///< levels of questions
+    int candidates = 400;               ///< features tried at a node
+    int thresholds = 20;                ///< tried for each
+    int reach_mm = 1000;                ///< largest offset along an axis
+    std::uint32_t min_samples = 20;     ///< a node with fewer becomes a leaf
     std::uint32_t split_samples = 4000; ///< a question is chosen by at most so many, evenly taken
     std::uint64_t seed = 1;
     std::filesystem::path checkpoint; ///< written after each level when not empty

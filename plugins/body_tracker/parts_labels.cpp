@@ -47,28 +47,47 @@ const Row& row(PartLabel label) noexcept {
 
 PartLabel joint_part(Joint joint, bool left) {
     switch (joint) {
-    case Joint::hips: return left ? PartLabel::left_pelvis : PartLabel::right_pelvis;
-    case Joint::spine: return left ? PartLabel::left_belly : PartLabel::right_belly;
+    case Joint::hips:
+        return left ? PartLabel::left_pelvis : PartLabel::right_pelvis;
+    case Joint::spine:
+        return left ? PartLabel::left_belly : PartLabel::right_belly;
     case Joint::chest:
-    case Joint::upper_chest: return left ? PartLabel::left_chest : PartLabel::right_chest;
-    case Joint::neck: return PartLabel::neck;
-    case Joint::head: return PartLabel::head;
-    case Joint::left_shoulder: return PartLabel::left_shoulder;
-    case Joint::right_shoulder: return PartLabel::right_shoulder;
-    case Joint::left_upper_arm: return PartLabel::left_upper_arm;
-    case Joint::right_upper_arm: return PartLabel::right_upper_arm;
-    case Joint::left_lower_arm: return PartLabel::left_lower_arm;
-    case Joint::right_lower_arm: return PartLabel::right_lower_arm;
-    case Joint::left_hand: return PartLabel::left_hand;
-    case Joint::right_hand: return PartLabel::right_hand;
-    case Joint::left_upper_leg: return PartLabel::left_thigh;
-    case Joint::right_upper_leg: return PartLabel::right_thigh;
-    case Joint::left_lower_leg: return PartLabel::left_shin;
-    case Joint::right_lower_leg: return PartLabel::right_shin;
+    case Joint::upper_chest:
+        return left ? PartLabel::left_chest : PartLabel::right_chest;
+    case Joint::neck:
+        return PartLabel::neck;
+    case Joint::head:
+        return PartLabel::head;
+    case Joint::left_shoulder:
+        return PartLabel::left_shoulder;
+    case Joint::right_shoulder:
+        return PartLabel::right_shoulder;
+    case Joint::left_upper_arm:
+        return PartLabel::left_upper_arm;
+    case Joint::right_upper_arm:
+        return PartLabel::right_upper_arm;
+    case Joint::left_lower_arm:
+        return PartLabel::left_lower_arm;
+    case Joint::right_lower_arm:
+        return PartLabel::right_lower_arm;
+    case Joint::left_hand:
+        return PartLabel::left_hand;
+    case Joint::right_hand:
+        return PartLabel::right_hand;
+    case Joint::left_upper_leg:
+        return PartLabel::left_thigh;
+    case Joint::right_upper_leg:
+        return PartLabel::right_thigh;
+    case Joint::left_lower_leg:
+        return PartLabel::left_shin;
+    case Joint::right_lower_leg:
+        return PartLabel::right_shin;
     case Joint::left_foot:
-    case Joint::left_toes: return PartLabel::left_foot;
+    case Joint::left_toes:
+        return PartLabel::left_foot;
     case Joint::right_foot:
-    case Joint::right_toes: return PartLabel::right_foot;
+    case Joint::right_toes:
+        return PartLabel::right_foot;
     }
     return PartLabel::invalid;
 }
