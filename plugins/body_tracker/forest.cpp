@@ -60,7 +60,8 @@ void label_pixels(const Forest& forest, const DepthView& view, const LabelPictur
     const auto sums = std::span(all).first(static_cast<std::size_t>(forest.class_count));
     for (int r = std::max(first_row, 0); r < std::min(last_row, rows); ++r)
         for (int c = 0; c < columns; ++c) {
-            const auto at = static_cast<std::size_t>(r * columns + c);
+            const auto at = static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) +
+                            static_cast<std::size_t>(c);
             out.labels[at] = out.shares[at] = 0;
             const int x = c * out.step, y = r * out.step;
             if (view.mm[y * view.width + x] == 0) continue;

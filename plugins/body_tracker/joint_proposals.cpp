@@ -44,11 +44,13 @@ void JointProposer::collect(const DepthView& view, const ImageCentre& centre,
         part.pixels = part.seen = part.count = 0;
     const int columns = (view.width + labels.step - 1) / labels.step;
     const int rows = (view.height + labels.step - 1) / labels.step;
-    for (std::size_t at = 0; at < static_cast<std::size_t>(columns * rows); ++at)
+    for (std::size_t at = 0;
+         at < static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); ++at)
         if (used(labels, at)) ++parts_[labels.labels[at] - 1u].pixels;
     for (int r = 0; r < rows; ++r)
         for (int c = 0; c < columns; ++c) {
-            const auto at = static_cast<std::size_t>(r * columns + c);
+            const auto at = static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) +
+                            static_cast<std::size_t>(c);
             if (!used(labels, at)) continue;
             PartPoints& part = parts_[labels.labels[at] - 1u];
             const std::size_t kept = std::min(kPoints, part.pixels);

@@ -34,8 +34,7 @@ body::Pose draw_pose(const body::Skeleton& skeleton, Random& random) {
     body::Pose pose = body::random_pose(skeleton, random);
     const auto turn = static_cast<float>(random.uniform(0.0, 2.0 * std::numbers::pi));
     pose.rotations[0] = Quatf(Eigen::AngleAxisf(turn, Vec3f::UnitY())) * pose.rotations[0];
-    pose.hips_position.y() -=
-        body::lowest_sole(skeleton, body::forward_kinematics(skeleton, pose));
+    pose.hips_position.y() -= body::lowest_sole(skeleton, body::forward_kinematics(skeleton, pose));
     return pose;
 }
 
@@ -45,10 +44,9 @@ Eigen::Isometry3f draw_camera(const Vec3f& hips, const FrameRange& range, Random
     const double half = 0.5 * range.width / range.focal_px;
     const double aside = random.uniform(-1.0, 1.0) * range.aside_share * half * distance;
     Eigen::Isometry3f world_from_camera = Eigen::Isometry3f::Identity();
-    world_from_camera.translation() =
-        Vec3f(hips.x() + static_cast<float>(aside),
-              static_cast<float>(draw(range.camera_height_m, random)),
-              hips.z() + static_cast<float>(distance));
+    world_from_camera.translation() = Vec3f(hips.x() + static_cast<float>(aside),
+                                            static_cast<float>(draw(range.camera_height_m, random)),
+                                            hips.z() + static_cast<float>(distance));
     const auto tilt = static_cast<float>(random.uniform(-1.0, 1.0) * range.tilt_rad);
     world_from_camera.rotate(Eigen::AngleAxisf(tilt, Vec3f::UnitX()));
     return world_from_camera.inverse();
@@ -83,7 +81,8 @@ void draw_triangle(const std::array<Corner, 3>& c, const std::array<PartLabel, 3
             if (share[0] < 0.0f || share[1] < 0.0f || share[2] < 0.0f) continue;
             const float inverse =
                 share[0] * c[0].inverse + share[1] * c[1].inverse + share[2] * c[2].inverse;
-            const auto mm = static_cast<std::uint16_t>(std::min(1000.0f / inverse + 0.5f, 65535.0f));
+            const auto mm =
+                static_cast<std::uint16_t>(std::min(1000.0f / inverse + 0.5f, 65535.0f));
             const auto at = static_cast<std::size_t>(y * frame.width + x);
             if (frame.mm[at] != 0 && frame.mm[at] <= mm) continue;
             frame.mm[at] = mm;
@@ -109,8 +108,7 @@ FrameMaker::FrameMaker(const body::BodySpace& space, int people, std::uint64_t s
     for (int p = 0; p < people; ++p) {
         const body::Sex sex = body::kSexes[static_cast<std::size_t>(p % 2)];
         const Eigen::VectorXd drawn = draw_shape(space.prior(sex), range.shape_spread, random);
-        body::BodyShape shape =
-            space.shape({drawn.data(), static_cast<std::size_t>(drawn.size())});
+        body::BodyShape shape = space.shape({drawn.data(), static_cast<std::size_t>(drawn.size())});
         std::vector<Vec3f> coarse;
         for (const std::uint32_t v : vertices)
             coarse.push_back(shape.positions[v]);
@@ -143,7 +141,8 @@ PartsFrame FrameMaker::make(std::uint32_t index) const {
 
 void draw_parts(std::span<const Vec3f> points, std::span<const Triangle> triangles,
                 std::span<const PartLabel> labels, PartsFrame& frame) {
-    const auto size = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
+    const auto size =
+        static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
     frame.mm.assign(size, 0);
     frame.labels.assign(size, PartLabel::invalid);
     const float cx = 0.5f * static_cast<float>(frame.width - 1);

@@ -26,8 +26,8 @@ struct FrameRange {
 struct PartsFrame {
     int width = 0, height = 0;
     float focal_px = 0.0f;
-    std::vector<std::uint16_t> mm;   ///< (width * height), 0 where nobody is
-    std::vector<PartLabel> labels;   ///< (width * height), invalid where nobody is
+    std::vector<std::uint16_t> mm;               ///< (width * height), 0 where nobody is
+    std::vector<PartLabel> labels;               ///< (width * height), invalid where nobody is
     std::array<Vec3f, body::kJointCount> joints; ///< metres, camera frame (-Z ahead, +Y up)
 };
 

@@ -103,7 +103,8 @@ TEST(PartsFrames, TeachAForestPeopleItHasNotSeen) {
     const double share = static_cast<double>(right) / all;
     RecordProperty("pixels_right", std::to_string(share));
     // Guessing the commonest part for every pixel is what it must leave far behind.
-    EXPECT_GT(share, 2.0 * static_cast<double>(*std::max_element(counts.begin(), counts.end())) / all);
+    EXPECT_GT(share,
+              2.0 * static_cast<double>(*std::max_element(counts.begin(), counts.end())) / all);
 }
 
 } // namespace
