@@ -57,10 +57,10 @@ class CameraDevice::Streams : public openni::OpenNI::DeviceDisconnectedListener 
     std::string uri_;
 };
 
-CameraDevice::CameraDevice(std::shared_ptr<OpenNiLibrary> library, const Address& address,
+CameraDevice::CameraDevice(const OpenNiLibrary&, const Address& address,
                            const DeviceOptions& options)
-    : library_(std::move(library)), streams_(std::make_unique<Streams>(address.uri)),
-      recording_(address.recording), live_(options.live) {
+    : streams_(std::make_unique<Streams>(address.uri)), recording_(address.recording),
+      live_(options.live) {
     openni::Device& device = streams_->device;
     if (device.open(address.uri.c_str()) != openni::STATUS_OK)
         throw failed(address.uri,
@@ -74,7 +74,9 @@ CameraDevice::CameraDevice(std::shared_ptr<OpenNiLibrary> library, const Address
     describe(address, options);
     if (recording_) {
         openni::PlaybackControl& playing = *device.getPlaybackControl();
-        playing.setRepeatEnabled(false);
+        // At a recording's end OpenNI2's player tells of a lost device and may then crash when it
+        // is closed: let it begin anew, and stop at the last frame ourselves.
+        playing.setRepeatEnabled(true);
         playing.setSpeed(live_ ? 1.0f : -1.0f);
         streams_->frames = playing.getNumberOfFrames(streams_->depth);
     }
@@ -150,7 +152,12 @@ CameraDevice::Step CameraDevice::next_of_recording(SensedFrame& out) {
     if (openni::OpenNI::waitForAnyStream(&depth, 1, &ready, wait) != openni::STATUS_OK)
         return live_ && !streams_->gone ? Step::nothing_new : Step::over;
     take_depth(out);
-    streams_->read = streams_->depth_frame.getFrameIndex();
+    const int index = streams_->depth_frame.getFrameIndex();
+    if (index < streams_->read) { // begun anew
+        streams_->read = streams_->frames;
+        return Step::over;
+    }
+    streams_->read = index;
     if (!streams_->color.isValid()) return Step::frame;
     openni::VideoStream* color = &streams_->color;
     // The colour of the same moment stands beside the depth.

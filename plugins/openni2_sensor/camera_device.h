@@ -5,6 +5,7 @@
 #include "openni2_sensor/open_ni.h"
 
 #include <atomic>
+#include <memory>
 #include <optional>
 
 namespace toile::openni2_sensor {
@@ -26,7 +27,7 @@ struct SensedFrame {
 class CameraDevice {
   public:
     /// \throw Error when it cannot be opened or gives no depth
-    CameraDevice(std::shared_ptr<OpenNiLibrary> library, const Address& address,
+    CameraDevice(const OpenNiLibrary& library, const Address& address,
                  const DeviceOptions& options);
     CameraDevice(const CameraDevice&) = delete;
     CameraDevice& operator=(const CameraDevice&) = delete;
@@ -51,7 +52,6 @@ class CameraDevice {
     void take_depth(SensedFrame& out);
     void take_color(SensedFrame& out);
 
-    std::shared_ptr<OpenNiLibrary> library_; ///< outlives the streams
     std::unique_ptr<Streams> streams_;
     imaging::Intrinsics intrinsics_;
     double period_s_ = 0.0;

@@ -7,17 +7,11 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <mutex>
 
 namespace toile::openni2_sensor {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::mutex& library_mutex() {
-    static std::mutex mutex;
-    return mutex;
-}
 
 bool is_number(const std::string& text) {
     return !text.empty() && text.size() < 4 &&
@@ -47,24 +41,14 @@ std::string what_there_is(const std::vector<DeviceName>& devices) {
 
 } // namespace
 
-std::shared_ptr<OpenNiLibrary> OpenNiLibrary::acquire() {
-    static std::weak_ptr<OpenNiLibrary> running;
-    const std::scoped_lock lock(library_mutex());
-    auto library = running.lock();
-    if (library == nullptr) {
-        library.reset(new OpenNiLibrary());
-        running = library;
-    }
-    return library;
+const OpenNiLibrary& OpenNiLibrary::running() {
+    static const OpenNiLibrary* const library = new OpenNiLibrary();
+    return *library;
 }
 
 OpenNiLibrary::OpenNiLibrary() {
     if (openni::OpenNI::initialize() != openni::STATUS_OK)
         throw Error(std::string("OpenNI2 does not start: ") + openni::OpenNI::getExtendedError());
-}
-
-OpenNiLibrary::~OpenNiLibrary() {
-    openni::OpenNI::shutdown();
 }
 
 std::vector<DeviceName> list_devices(const OpenNiLibrary&) {

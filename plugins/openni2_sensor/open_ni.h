@@ -1,20 +1,19 @@
 // OpenNI2 as a whole: started, and asked which cameras there are.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace toile::openni2_sensor {
 
-/// OpenNI2 runs as long as somebody holds one of these; one for the process.
+/// OpenNI2, running. One for the process and until its end: shutting it down unloads drivers whose
+/// threads may still run, and then it crashes.
 class OpenNiLibrary {
   public:
-    /// \throw Error when OpenNI2 cannot start [any thread]
-    [[nodiscard]] static std::shared_ptr<OpenNiLibrary> acquire();
+    /// Started at the first call. \throw Error when it cannot start [any thread]
+    [[nodiscard]] static const OpenNiLibrary& running();
     OpenNiLibrary(const OpenNiLibrary&) = delete;
     OpenNiLibrary& operator=(const OpenNiLibrary&) = delete;
-    ~OpenNiLibrary();
 
   private:
     OpenNiLibrary();

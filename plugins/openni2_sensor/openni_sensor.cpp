@@ -12,8 +12,8 @@ constexpr std::chrono::milliseconds kLookAgain{500};
 } // namespace
 
 OpenNiSensor::OpenNiSensor(const std::string& source, const DeviceOptions& options, Log log)
-    : library_(OpenNiLibrary::acquire()), options_(options), log_(std::move(log)),
-      address_(resolve(source, *library_)),
+    : library_(OpenNiLibrary::running()), options_(options), log_(std::move(log)),
+      address_(resolve(source, library_)),
       device_(std::make_unique<CameraDevice>(library_, address_, options)) {
     intrinsics_ = device_->intrinsics();
     has_color_ = device_->has_color();
@@ -60,7 +60,7 @@ void OpenNiSensor::look_for_device() {
     if (Clock::now() - looked_ < kLookAgain) return;
     looked_ = Clock::now();
     returning_ = std::async(std::launch::async, [this]() -> std::unique_ptr<CameraDevice> {
-        const auto devices = list_devices(*library_);
+        const auto devices = list_devices(library_);
         const bool there = std::any_of(devices.begin(), devices.end(), [&](const DeviceName& one) {
             return one.uri == address_.uri;
         });

@@ -41,7 +41,7 @@ class OpenNiSensor {
     void look_for_device();
     bool accept();
 
-    std::shared_ptr<OpenNiLibrary> library_;
+    const OpenNiLibrary& library_;
     DeviceOptions options_;
     Log log_;
     Address address_;

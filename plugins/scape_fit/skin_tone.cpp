@@ -63,6 +63,8 @@ std::optional<SkinTone> SkinTone::learn(std::span<const Vec2f> face) {
     return out;
 }
 
-bool SkinTone::like(const Vec2f& hue) const { return (hue - hue_).norm() < reach_; }
+bool SkinTone::like(const Vec2f& hue) const {
+    return (hue - hue_).norm() < reach_;
+}
 
 } // namespace toile::scape_fit

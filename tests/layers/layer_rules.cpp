@@ -61,6 +61,7 @@ const std::vector<Library> kLibraries = {
     {"assimp", "^assimp/.*", "^assimp::.*", {"assets"}, false},
     {"libzip", "^zip\\.h$", "^PkgConfig::LIBZIP$", {"assets"}, false},
     {"oneTBB", "^(tbb|oneapi)/.*", "^TBB::.*", {"host"}, false},
+    {"OpenNI2", "^(OpenNI\\.h|Driver/OniDriverAPI\\.h)$", "^PkgConfig::OPENNI2$", {}, true},
     {"dl", "^dlfcn\\.h$", "^\\$\\{CMAKE_DL_LIBS\\}$", {"host"}, false},
     {"GLFW", "^GLFW/.*", "^glfw$", {"render"}, false},
     {"OSMesa and GL",

@@ -1,8 +1,8 @@
 // The real OpenNI2 library, with cameras of a driver that tests know (tests/driver), and
 // recordings.
-#include "driver/test_pictures.h"
 #include "imaging/oni_writer.h"
 #include "openni2_sensor/openni_sensor.h"
+#include "openni2_sensor/tests/driver/test_pictures.h"
 #include "support/temporary_folder.h"
 #include "support/throws.h"
 

@@ -45,7 +45,8 @@ TEST(SkinTone, SkinOfAllShadesIsToldFromCloth) {
         for (auto& c : shaded)
             c = static_cast<std::uint8_t>(c * 3 / 4);
         EXPECT_TRUE(tone->like(hue_of(shaded.data())));
-        for (const Rgb& cloth : {Rgb{200, 200, 200}, Rgb{60, 80, 140}, Rgb{150, 40, 45}, Rgb{70, 70, 70}})
+        for (const Rgb& cloth :
+             {Rgb{200, 200, 200}, Rgb{60, 80, 140}, Rgb{150, 40, 45}, Rgb{70, 70, 70}})
             EXPECT_FALSE(tone->like(hue_of(cloth.data()))) << int{cloth[0]};
     }
 }

@@ -1,6 +1,6 @@
 // A driver for OpenNI2 that has two cameras of its own: pictures that tests can work out, unplugged
 // and plugged in as a test wants. Loaded by the real library from its folder of drivers.
-#include "driver/test_pictures.h"
+#include "openni2_sensor/tests/driver/test_pictures.h"
 
 // OpenNI2 ships this header without the one that these come from.
 #define XN_NEW(type, ...) new type(__VA_ARGS__)
