@@ -40,13 +40,17 @@ constexpr std::array kNames{"bust_girth",        "waist_girth", "hip_girth",
 const std::array<Vec3f, 3> kSkins{Vec3f(0.78f, 0.48f, 0.35f), Vec3f(0.52f, 0.26f, 0.15f),
                                   Vec3f(0.16f, 0.065f, 0.033f)};
 
+constexpr float kJersey = 0.001f; // metres thick
+constexpr int kSuitRounds = 60;
+const Vec3f kSuitColor(0.05f, 0.09f, 0.22f);
+
 struct Settings {
     fs::path model, cases, json;
     double period = 1.1;
     std::string noise = "usual";
     std::string only;
     std::size_t count = 1000;
-    bool compare = true, color = true;
+    bool compare = true, color = true, tight = false;
     fit::FitOptions fit = fit::options_for_pictures(4, kPoses);
 };
 
@@ -80,27 +84,59 @@ struct Seen {
     }
 };
 
-void save_ply(const toile::geometry::TriangleMesh& mesh, const fs::path& file) {
+using Mesh = toile::geometry::TriangleMesh;
+
+void add_mesh(toile::assets::Scene& scene, const Mesh& mesh, const Vec3f& color) {
+    toile::assets::Material material;
+    material.base_color.head<3>() = color;
     toile::assets::Primitive primitive;
     primitive.positions = mesh.positions;
     primitive.triangles = mesh.triangles;
-    toile::assets::Scene scene;
-    scene.meshes.push_back({"body", {std::move(primitive)}, {}});
+    primitive.material = static_cast<int>(scene.materials.size());
+    scene.materials.push_back(material);
     toile::assets::Node node;
-    node.name = "body";
-    node.mesh = 0;
+    node.name = "surface" + std::to_string(scene.nodes.size());
+    node.mesh = static_cast<int>(scene.meshes.size());
+    scene.meshes.push_back({node.name, {std::move(primitive)}, {}});
     scene.nodes.push_back(node);
-    toile::assets::save_scene(scene, file);
 }
 
-/// The same body without its clothes, in the same poses.
-Seen see_undressed(const Settings& settings, std::uint64_t seed,
-                   const std::vector<toile::geometry::TriangleMesh>& surfaces) {
+/// What a suit of jersey covers: it lies on the skin from neck to wrists and ankles, and spans
+/// hollows.
+Mesh tight_suit(const Mesh& bare, std::span<const std::uint8_t> clothed) {
+    std::vector<Vec3f> normals(bare.positions.size());
+    toile::geometry::vertex_normals(bare.positions, bare.triangles, normals);
+    Mesh out = bare;
+    std::erase_if(out.triangles, [&](const toile::Triangle& t) {
+        return clothed[t[0]] == 0 || clothed[t[1]] == 0 || clothed[t[2]] == 0;
+    });
+    for (int round = 0; round < kSuitRounds; ++round) {
+        std::vector<Vec3f> sums(out.positions.size(), Vec3f::Zero());
+        std::vector<float> counts(out.positions.size(), 0.0f);
+        for (const auto& t : out.triangles)
+            for (std::size_t k = 0; k < 3; ++k) {
+                sums[t[k]] += out.positions[t[(k + 1) % 3]] + out.positions[t[(k + 2) % 3]];
+                counts[t[k]] += 2.0f;
+            }
+        for (std::size_t v = 0; v < sums.size(); ++v) {
+            if (counts[v] == 0.0f) continue;
+            Vec3f& q = out.positions[v];
+            q = sums[v] / counts[v];
+            const float off = normals[v].dot(q - bare.positions[v]);
+            q += std::max(0.0f, kJersey - off) * normals[v];
+        }
+    }
+    return out;
+}
+
+/// Surfaces of an instant each, seen on their own.
+Seen see_scenes(const Settings& settings, std::uint64_t seed,
+                const std::vector<toile::assets::Scene>& scenes) {
     Seen out;
     const fs::path file =
-        fs::temp_directory_path() / ("toile_undressed_" + std::to_string(getpid()) + ".ply");
-    for (std::size_t f = 0; f < surfaces.size(); ++f) {
-        save_ply(surfaces[f], file);
+        fs::temp_directory_path() / ("toile_seen_" + std::to_string(getpid()) + ".glb");
+    for (std::size_t f = 0; f < scenes.size(); ++f) {
+        toile::assets::save_scene(scenes[f], file);
         sensor::Scenario scenario = scenario_of(settings, seed + 100 * f);
         scenario.people.push_back(person_of(sensor::BodyKind::mesh, file));
         sensor::Simulator simulator(std::move(scenario), &rows_on_all_cores);
@@ -158,13 +194,25 @@ struct Evaluation {
         row["id"] = folder.filename().string();
         for (std::uint32_t f = 0; f < kPoses; ++f) {
             simulator.show(f);
-            seen.add(simulator, f);
+            if (!settings.tight) seen.add(simulator, f);
             for (const auto& one : simulator.figures()[0]->surfaces())
                 if (one.role == body::SurfaceRole::body) {
                     bare.emplace_back().positions = one.positions;
                     bare.back().triangles = one.surface.triangles;
                 }
         }
+        const Vec3f& skin = kSkins[seed % kSkins.size()];
+        std::vector<toile::assets::Scene> undressed(bare.size()), suited(bare.size());
+        const fit::FitLevel& full = model.level(0);
+        for (std::size_t f = 0; f < bare.size(); ++f) {
+            add_mesh(undressed[f], bare[f], skin);
+            if (!settings.tight) continue;
+            if (bare[f].positions.size() != full.clothed.size())
+                throw toile::Error(folder.string() + ": its body is not of the model's topology");
+            add_mesh(suited[f], bare[f], skin);
+            add_mesh(suited[f], tight_suit(bare[f], full.clothed), kSuitColor);
+        }
+        if (settings.tight) seen = see_scenes(settings, seed, suited);
         fit::FitOptions options = settings.fit;
         options.floor = seen.floor;
         options.dressed = true;
@@ -182,7 +230,7 @@ struct Evaluation {
             options.dressed = false;
             row["errors_mm"]["without_mitigation"] =
                 errors_of(fitter.fit(seen.observations, options, &rows_on_all_cores), truth);
-            const Seen naked = see_undressed(settings, seed, bare);
+            const Seen naked = see_scenes(settings, seed, undressed);
             row["errors_mm"]["undressed"] =
                 errors_of(fitter.fit(naked.observations, options, &rows_on_all_cores), truth);
         }
@@ -225,6 +273,7 @@ int main(int argc, char** argv) {
     app.add_option("--only", settings.only, "Cases whose names contain this");
     app.add_option("--json", settings.json, "Gets all figures");
     app.add_flag("!--dressed-only", settings.compare, "No fits to compare with");
+    app.add_flag("--tight", settings.tight, "In a suit of jersey instead of the case's clothes");
     app.add_flag("!--no-color", settings.color, "Depth alone");
     app.add_option("--unknown", settings.fit.cloth.unknown_weight);
     app.add_option("--half", settings.fit.cloth.half_weight_m);
