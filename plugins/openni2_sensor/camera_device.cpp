@@ -151,7 +151,7 @@ CameraDevice::Step CameraDevice::next_of_recording(SensedFrame& out) {
     const int wait = live_ ? 0 : kReadTimeout;
     if (openni::OpenNI::waitForAnyStream(&depth, 1, &ready, wait) != openni::STATUS_OK)
         return live_ && !streams_->gone ? Step::nothing_new : Step::over;
-    take_depth(out);
+    if (!take_depth(out)) return Step::nothing_new;
     const int index = streams_->depth_frame.getFrameIndex();
     if (index < streams_->read) { // begun anew
         streams_->read = streams_->frames;
@@ -183,13 +183,13 @@ CameraDevice::Step CameraDevice::poll(SensedFrame& out) {
     }
     if (openni::OpenNI::waitForAnyStream(&depth, 1, &ready, 0) != openni::STATUS_OK)
         return streams_->gone ? Step::lost : Step::nothing_new;
-    take_depth(out);
+    if (!take_depth(out)) return streams_->gone ? Step::lost : Step::nothing_new;
     return streams_->gone ? Step::lost : Step::frame;
 }
 
-void CameraDevice::take_depth(SensedFrame& out) {
+bool CameraDevice::take_depth(SensedFrame& out) {
     openni::VideoFrameRef& frame = streams_->depth_frame;
-    if (streams_->depth.readFrame(&frame) != openni::STATUS_OK) return;
+    if (streams_->depth.readFrame(&frame) != openni::STATUS_OK) return false;
     const auto width = static_cast<std::size_t>(intrinsics_.width);
     const auto height = static_cast<std::size_t>(intrinsics_.height);
     out.depth.assign(width * height, std::numeric_limits<float>::quiet_NaN());
@@ -206,6 +206,7 @@ void CameraDevice::take_depth(SensedFrame& out) {
                 out.depth[y * width + (flip_depth_ ? width - 1 - x : x)] =
                     unit_m_ * static_cast<float>(row[x]);
     }
+    return true;
 }
 
 void CameraDevice::take_color(SensedFrame& out) {

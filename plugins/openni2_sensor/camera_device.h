@@ -49,7 +49,7 @@ class CameraDevice {
     class Streams; ///< OpenNI2's own
     void describe(const Address& address, const DeviceOptions& options);
     Step next_of_recording(SensedFrame& out);
-    void take_depth(SensedFrame& out);
+    bool take_depth(SensedFrame& out); ///< false: it cannot be read
     void take_color(SensedFrame& out);
 
     std::unique_ptr<Streams> streams_;

@@ -6,7 +6,6 @@
 //
 // A case is a folder with `body.json` (who wears it) and `cache` (toile tryon --cache); its poses
 // are reached every `--period` seconds.
-#include "assets/files.h"
 #include "body/body_file.h"
 #include "body/measurer.h"
 #include "core/error.h"
@@ -85,21 +84,6 @@ struct Seen {
 };
 
 using Mesh = toile::geometry::TriangleMesh;
-
-void add_mesh(toile::assets::Scene& scene, const Mesh& mesh, const Vec3f& color) {
-    toile::assets::Material material;
-    material.base_color.head<3>() = color;
-    toile::assets::Primitive primitive;
-    primitive.positions = mesh.positions;
-    primitive.triangles = mesh.triangles;
-    primitive.material = static_cast<int>(scene.materials.size());
-    scene.materials.push_back(material);
-    toile::assets::Node node;
-    node.name = "surface" + std::to_string(scene.nodes.size());
-    node.mesh = static_cast<int>(scene.meshes.size());
-    scene.meshes.push_back({node.name, {std::move(primitive)}, {}});
-    scene.nodes.push_back(node);
-}
 
 /// What a suit of jersey covers: it lies on the skin from neck to wrists and ankles, and spans
 /// hollows.

@@ -8,7 +8,6 @@
 // Around the true state the fit's step is linear: with H and g of what was seen (pose and cameras
 // eliminated) and P, m of the population, a weight w moves the coefficients by
 // -(H + w P)^-1 (g + w P (b - m)). The error is taken over the surface, metres.
-#include "assets/files.h"
 #include "body/joint_limits.h"
 #include "body/rotations.h"
 #include "core/random.h"
@@ -66,27 +65,18 @@ fit::FitState somebody(const fit::FitModel& model, body::Sex sex, toile::Random&
     return out;
 }
 
-void save_surface(const fit::PosedLevel& posed, std::span<const toile::Triangle> triangles,
-                  const fs::path& file) {
-    toile::assets::Primitive primitive;
-    primitive.positions = posed.positions;
-    primitive.triangles.assign(triangles.begin(), triangles.end());
-    toile::assets::Scene scene;
-    scene.meshes.push_back({"body", {std::move(primitive)}, {}});
-    toile::assets::Node node;
-    node.name = "body";
-    node.mesh = 0;
-    scene.nodes.push_back(node);
-    toile::assets::save_scene(scene, file);
-}
-
 fit::ObservedPerson see(const Settings& settings, const fit::FitModel& model,
                         const fit::FitState& truth, std::uint64_t seed) {
     const fs::path file =
-        fs::temp_directory_path() / ("toile_shape_weight_" + std::to_string(getpid()) + ".ply");
+        fs::temp_directory_path() / ("toile_shape_weight_" + std::to_string(getpid()) + ".glb");
     fit::PosedLevel posed;
     fit::pose_level(model, model.level(0), truth.shape, truth.poses[0], posed);
-    save_surface(posed, model.level(0).triangles, file);
+    toile::geometry::TriangleMesh surface;
+    surface.positions = posed.positions;
+    surface.triangles = model.level(0).triangles;
+    toile::assets::Scene scene;
+    add_mesh(scene, surface, Vec3f::Constant(0.5f));
+    toile::assets::save_scene(scene, file);
     sensor::Scenario scenario = empty_room();
     scenario.seed = seed;
     add_cameras(scenario, settings.views, settings.noise);

@@ -1,6 +1,7 @@
 // Four simulated cameras around a person in a room, and what a fit sees of the person.
 #pragma once
 
+#include "assets/files.h"
 #include "core/parallel.h"
 #include "scape_fit/person_finder.h"
 #include "simulated_sensor/simulator.h"
@@ -58,6 +59,22 @@ inline scape_fit::ObservedPerson observe(simulated_sensor::Simulator& simulator,
         views.push_back(view);
     }
     return scape_fit::observe_person(views, instant);
+}
+
+/// A surface of one colour (linear) for a scene that simulated people are made of.
+inline void add_mesh(assets::Scene& scene, const geometry::TriangleMesh& mesh, const Vec3f& color) {
+    assets::Material material;
+    material.base_color.head<3>() = color;
+    assets::Primitive primitive;
+    primitive.positions = mesh.positions;
+    primitive.triangles = mesh.triangles;
+    primitive.material = static_cast<int>(scene.materials.size());
+    scene.materials.push_back(material);
+    assets::Node node;
+    node.name = "surface" + std::to_string(scene.nodes.size());
+    node.mesh = static_cast<int>(scene.meshes.size());
+    scene.meshes.push_back({node.name, {std::move(primitive)}, {}});
+    scene.nodes.push_back(node);
 }
 
 inline void rows_on_all_cores(std::uint32_t count, std::uint32_t grain,
