@@ -7,11 +7,11 @@ namespace toile::body_tracker {
 namespace {
 
 constexpr float kUsualStep = 1.0f / 30.0f;
-constexpr float kLongestStep = 1.0f;   // seconds
-constexpr float kOwn = 0.12f;          // metres from a person's bones: that person's
-constexpr float kGrow = 0.45f;         // as far may what hangs on such cells reach
-constexpr float kSamePerson = 0.9f;    // metres between where somebody went and came back
-constexpr std::uint32_t kDoubts = 6;   // frames before a piece counts as scene
+constexpr float kLongestStep = 1.0f; // seconds
+constexpr float kOwn = 0.12f;        // metres from a person's bones: that person's
+constexpr float kGrow = 0.45f;       // as far may what hangs on such cells reach
+constexpr float kSamePerson = 0.9f;  // metres between where somebody went and came back
+constexpr std::uint32_t kDoubts = 6; // frames before a piece counts as scene
 constexpr std::size_t kFewCells = 80;
 
 std::optional<geometry::Plane> floor_of(const CameraPlace& place) {

@@ -51,10 +51,10 @@ class BodyTracking {
     DepthGrid grid_;
     SceneWatch scene_;
     std::vector<std::unique_ptr<PersonTrack>> people_;
-    std::vector<std::uint8_t> owner_;     ///< (cells) 1 + person, 0: nobody's
+    std::vector<std::uint8_t> owner_; ///< (cells) 1 + person, 0: nobody's
     std::vector<std::uint32_t> stack_;
     std::uint32_t next_id_ = 1;
-    std::uint32_t doubtful_frames_ = 0;   ///< in a row with a piece that is no person
+    std::uint32_t doubtful_frames_ = 0; ///< in a row with a piece that is no person
     std::int64_t last_ns_ = 0;
     bool started_ = false;
 };

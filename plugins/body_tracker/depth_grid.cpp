@@ -6,8 +6,8 @@
 namespace toile::body_tracker {
 namespace {
 
-constexpr int kCells = 160;         // along the longer side
-constexpr float kNearest = 0.3f;    // metres
+constexpr int kCells = 160;      // along the longer side
+constexpr float kNearest = 0.3f; // metres
 constexpr float kFarthest = 10.0f;
 constexpr float kOneSurface = 0.08f; // metres between readings of one surface in a cell
 

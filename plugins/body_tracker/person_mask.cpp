@@ -15,8 +15,7 @@ struct Sweep {
     void take(int x, int y, int dx, int dy) const noexcept {
         const int nx = x + dx, ny = y + dy;
         if (nx < 0 || ny < 0 || nx >= camera.width || ny >= camera.height) return;
-        const std::int32_t theirs =
-            mask.nearest[static_cast<std::size_t>(ny * camera.width + nx)];
+        const std::int32_t theirs = mask.nearest[static_cast<std::size_t>(ny * camera.width + nx)];
         if (theirs < 0) return;
         std::int32_t& mine = mask.nearest[static_cast<std::size_t>(y * camera.width + x)];
         if (mine < 0 || squared(x, y, theirs) < squared(x, y, mine)) mine = theirs;

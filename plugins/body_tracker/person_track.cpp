@@ -16,11 +16,11 @@ constexpr float kKeepsMoving = 0.8f;       // share of the last motion that goes
 constexpr float kSearchAfter = 3;          // failures in a row
 constexpr float kNobody = 0.45f;           // not explained: what was found is no person
 constexpr std::size_t kFewCells = 40;
-constexpr float kFullView = 0.30f;         // share of a part's skin seen that gives all confidence
+constexpr float kFullView = 0.30f; // share of a part's skin seen that gives all confidence
 
 struct BoneEnds {
     Joint from, to;
-    float beyond;   ///< how much farther than `to`, in lengths
+    float beyond; ///< how much farther than `to`, in lengths
     float radius_m;
 };
 constexpr std::array<BoneEnds, 16> kBones{{
@@ -141,8 +141,8 @@ void PersonTrack::predict(float dt) noexcept {
     if (moving_ && dt > 0.0f) {
         motion_.pose.hips_position += kKeepsMoving * (pose_.hips_position - last_.hips_position);
         for (std::size_t j = 0; j < kJointCount; ++j) {
-            const Vec3f turned = body::rotation_vector(pose_.rotations[j] *
-                                                       last_.rotations[j].conjugate());
+            const Vec3f turned =
+                body::rotation_vector(pose_.rotations[j] * last_.rotations[j].conjugate());
             motion_.pose.rotations[j] =
                 (body::from_rotation_vector(kKeepsMoving * turned) * pose_.rotations[j])
                     .normalized();
@@ -203,7 +203,23 @@ void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
         }
     }
     rate_joints(seen);
+    show(dt);
+}
+
+/// Smooths the pose; `dt` 0: the first frame.
+void PersonTrack::show(float dt) noexcept {
+    const body::JointTransforms before = joints_;
     joints_ = body::forward_kinematics(body_.skeleton(), smoother_.update(pose_, dt));
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+        if (dt <= 0.0f) {
+            velocity_[j].setZero();
+            turning_[j].setZero();
+            continue;
+        }
+        velocity_[j] = (joints_[j].translation - before[j].translation) / dt;
+        turning_[j] =
+            body::rotation_vector(joints_[j].rotation * before[j].rotation.conjugate()) / dt;
+    }
     bones_.set(joints_);
 }
 
@@ -223,7 +239,8 @@ void PersonTrack::rate_joints(const SeenPerson& seen) noexcept {
         const float width = seen.grid.camera.footprint(cell.depth);
         area[leader_[t]] += width * width / std::max(0.3f, facing);
     }
-    const float trust = 1.0f - std::min(1.0f, agreement_.unexplained / (2.0f * options_.failed_share));
+    const float trust =
+        1.0f - std::min(1.0f, agreement_.unexplained / (2.0f * options_.failed_share));
     for (std::size_t j = 0; j < kJointCount; ++j) {
         const float full = kFullView * part_area_[j];
         const float share = full > 0.0f ? std::min(1.0f, area[j] / full) : 0.0f;

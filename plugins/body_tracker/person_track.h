@@ -12,11 +12,11 @@ enum class Following : std::uint8_t { invalid, detected, tracked, uncertain, los
 struct TrackOptions {
     RegistrationOptions registration;
     SmoothingOptions smoothing;
-    int steps = 4;            ///< Gauss-Newton steps a frame
+    int steps = 4; ///< Gauss-Newton steps a frame
     bool learn_shape = true;
-    bool recover = true;      ///< searches anew after a failure
-    float failed_error_m = 0.06f;   ///< mean distance, and ...
-    float failed_share = 0.15f;     ///< ... share not explained, that mean a failure (P5 3.6)
+    bool recover = true;          ///< searches anew after a failure
+    float failed_error_m = 0.06f; ///< mean distance, and ...
+    float failed_share = 0.15f;   ///< ... share not explained, that mean a failure (P5 3.6)
 };
 
 /// Distance of a point from a person's bones, less their thickness, metres; camera frame.
@@ -60,6 +60,14 @@ class PersonTrack {
     [[nodiscard]] PersonMask& mask() noexcept { return mask_; }
     [[nodiscard]] const Registration& registration() const noexcept { return registration_; }
 
+    /// Of a joint in the camera's frame, m/s and rad/s; 0 in the first frame.
+    [[nodiscard]] const Vec3f& velocity(std::size_t joint) const noexcept {
+        return velocity_[joint];
+    }
+    [[nodiscard]] const Vec3f& angular_velocity(std::size_t joint) const noexcept {
+        return turning_[joint];
+    }
+
     /// Smoothed, camera_from_joint; confidence in [0, 1].
     [[nodiscard]] const body::JointTransforms& joints() const noexcept { return joints_; }
     [[nodiscard]] const std::array<float, body::kJointCount>& confidence() const noexcept {
@@ -70,6 +78,7 @@ class PersonTrack {
     void settle(const SeenPerson& seen, float dt) noexcept;
     void search(const SeenPerson& seen, const Vec3f& up) noexcept;
     void rate_joints(const SeenPerson& seen) noexcept;
+    void show(float dt) noexcept;
     [[nodiscard]] bool failed() const noexcept;
 
     TrackOptions options_;
@@ -87,9 +96,10 @@ class PersonTrack {
     body::Pose pose_, last_;
     bool moving_ = false; ///< last_ is of the frame before
     Agreement agreement_;
-    int failures_ = 0;    ///< frames in a row
+    int failures_ = 0; ///< frames in a row
     float unseen_s_ = 0.0f;
     body::JointTransforms joints_;
+    std::array<Vec3f, body::kJointCount> velocity_{}, turning_{};
     std::array<float, body::kJointCount> confidence_{};
     std::array<float, body::kJointCount> part_area_{}; ///< m^2 of the skin that each joint leads
     std::vector<std::uint8_t> leader_;                 ///< (triangles) joint that leads each

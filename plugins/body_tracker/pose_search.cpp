@@ -12,11 +12,11 @@ namespace {
 using body::Joint;
 
 constexpr int kYaws = 12;
-constexpr std::size_t kKept = 6;     // candidates looked at closely
-constexpr std::size_t kMoved = 3;    // and moved on to the end
+constexpr std::size_t kKept = 6;  // candidates looked at closely
+constexpr std::size_t kMoved = 3; // and moved on to the end
 constexpr int kQuickRounds = 4;
 constexpr int kRounds = 10;
-constexpr float kThickness = 0.10f;  // metres from the seen surface to the body's middle
+constexpr float kThickness = 0.10f; // metres from the seen surface to the body's middle
 
 RegistrationOptions wide_options() {
     RegistrationOptions out;
@@ -107,7 +107,8 @@ FoundPose PoseSearch::find(const SeenPerson& seen, const Vec3f& up, const body::
                         skeleton.rest(Joint::neck).y();
     for (int yaw = 0; yaw < kYaws; ++yaw) {
         const Quatf turn =
-            upright * body::about(Vec3f::UnitY(), 2.0f * body::kPi * static_cast<float>(yaw) / kYaws);
+            upright *
+            body::about(Vec3f::UnitY(), 2.0f * body::kPi * static_cast<float>(yaw) / kYaws);
         for (std::size_t arm = 0; arm < body::usual_arms().size(); ++arm) {
             body::Pose pose = arms_[arm];
             pose.rotations[0] = turn;
@@ -119,14 +120,14 @@ FoundPose PoseSearch::find(const SeenPerson& seen, const Vec3f& up, const body::
         refine(seen, candidate, kQuickRounds, registration);
         improve_limbs(seen, candidate, registration);
     }
-    std::stable_sort(best_.begin(), best_.end(), [](const Candidate& a, const Candidate& b) {
-        return a.badness < b.badness;
-    });
+    std::stable_sort(best_.begin(), best_.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.badness < b.badness; });
     for (std::size_t i = 0; i < std::min(kMoved, best_.size()); ++i)
         refine(seen, best_[i], kRounds, registration);
-    const auto best = std::min_element(
-        best_.begin(), best_.end(),
-        [](const Candidate& a, const Candidate& b) { return a.badness < b.badness; });
+    const auto best =
+        std::min_element(best_.begin(), best_.end(), [](const Candidate& a, const Candidate& b) {
+            return a.badness < b.badness;
+        });
     return {best->pose, registration.judge(seen, best->pose)};
 }
 

@@ -37,10 +37,10 @@ class PoseSearch {
                 Registration& registration) const noexcept;
 
     const TrackedBody& body_;
-    std::vector<body::Pose> arms_;        ///< ways of holding both arms
-    std::vector<Candidate> best_;         ///< best first
-    Vec3f top_ = Vec3f::Zero();           ///< camera frame: above the person's middle, at its top
-    float down_m_ = 0.0f;                 ///< from there to the lowest cell
+    std::vector<body::Pose> arms_; ///< ways of holding both arms
+    std::vector<Candidate> best_;  ///< best first
+    Vec3f top_ = Vec3f::Zero();    ///< camera frame: above the person's middle, at its top
+    float down_m_ = 0.0f;          ///< from there to the lowest cell
 };
 
 } // namespace toile::body_tracker

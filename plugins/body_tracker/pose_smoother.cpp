@@ -15,9 +15,8 @@ const body::Pose& PoseSmoother::update(const body::Pose& pose, float dt) noexcep
         return body::approach(dt, 1.0f / (2.0f * body::kPi * cutoff));
     };
     speed_ += speed_share * ((pose.hips_position - last_.hips_position) / dt - speed_);
-    smooth_.hips_position +=
-        share_at(options_.minimum_hz + options_.slope_hz * speed_.norm()) *
-        (pose.hips_position - smooth_.hips_position);
+    smooth_.hips_position += share_at(options_.minimum_hz + options_.slope_hz * speed_.norm()) *
+                             (pose.hips_position - smooth_.hips_position);
     for (std::size_t j = 0; j < body::kJointCount; ++j) {
         const Quatf& now = pose.rotations[j];
         const Vec3f turned = body::rotation_vector(now * last_.rotations[j].conjugate()) / dt;

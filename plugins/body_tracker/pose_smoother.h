@@ -8,10 +8,10 @@ namespace toile::body_tracker {
 
 struct SmoothingOptions {
     bool on = true;
-    float minimum_hz = 2.0f;        ///< cutoff at rest
-    float slope_hz = 6.0f;          ///< more of it for each m/s of the hips
-    float turn_slope_hz = 2.5f;     ///< more of it for each rad/s of a joint
-    float speed_hz = 4.0f;          ///< cutoff of the speeds' own filter
+    float minimum_hz = 2.0f;    ///< cutoff at rest
+    float slope_hz = 6.0f;      ///< more of it for each m/s of the hips
+    float turn_slope_hz = 2.5f; ///< more of it for each rad/s of a joint
+    float speed_hz = 4.0f;      ///< cutoff of the speeds' own filter
 };
 
 /// Filters the hips' place and each joint's turn; bones keep their lengths. The lag at a constant

@@ -11,12 +11,12 @@ namespace {
 
 using body::kJointCount;
 
-constexpr float kLeastCosine = 0.2f;  // between surface and line of sight
-constexpr float kBehind = 0.10f;      // metres: what lies so far behind the body is not it
-constexpr float kExplained = 0.06f;   // metres (P5 3.6)
-constexpr float kSlackCells = 1.2f;   // an outline is not known better
-constexpr double kMostTurn = 0.4;     // radians a step
-constexpr double kMostShift = 0.25;   // metres a step
+constexpr float kLeastCosine = 0.2f; // between surface and line of sight
+constexpr float kBehind = 0.10f;     // metres: what lies so far behind the body is not it
+constexpr float kExplained = 0.06f;  // metres (P5 3.6)
+constexpr float kSlackCells = 1.2f;  // an outline is not known better
+constexpr double kMostTurn = 0.4;    // radians a step
+constexpr double kMostShift = 0.25;  // metres a step
 constexpr float kFloorDeviation = 0.01f;
 constexpr std::size_t kExtraEvery = 2; // every n-th cell is enough
 
@@ -70,8 +70,8 @@ void Registration::add_row(const TriangleJoints& joints, const std::array<float,
     const auto& below = body_.level().below;
     for (std::uint8_t k = 0; k < joints.count; ++k) {
         const std::size_t j = joints.joints[k];
-        const float share = weights[0] * below[triangle[0]][j] + weights[1] * below[triangle[1]][j] +
-                            weights[2] * below[triangle[2]][j];
+        const float share = weights[0] * below[triangle[0]][j] +
+                            weights[1] * below[triangle[1]][j] + weights[2] * below[triangle[2]][j];
         if (share < 1e-3f) continue;
         Vec3f turn = share * (at - posed_.joints[j].translation).cross(along);
         if (const auto parent = body::joint_parent(static_cast<body::Joint>(j)))
@@ -106,8 +106,7 @@ void Registration::add_readings(const SeenPerson& seen,
             const float off = cell.depth - seen.grid.depth[i];
             if (std::abs(off) > options.reach_m) continue;
             const Place place = place_of(cell);
-            const Vec3f ray =
-                camera_.point(static_cast<float>(x), static_cast<float>(y), 1.0f);
+            const Vec3f ray = camera_.point(static_cast<float>(x), static_cast<float>(y), 1.0f);
             const float facing = -place.normal.dot(ray) / ray.norm();
             if (facing < kLeastCosine) continue;
             const float residual = place.normal.dot(off * ray);
@@ -176,8 +175,8 @@ void Registration::add_extra(const SeenPerson& seen, const RegistrationOptions& 
         // Along the way with all weight, across it with none: the nearest place may slide.
         const std::int32_t corner = body_.corner_of(v);
         add_row(body_.joints_of(corner / 3), body_.weights_of(corner),
-                body_.level().triangles[static_cast<std::size_t>(corner / 3)],
-                posed_.positions[v], way, distance - slack, weight);
+                body_.level().triangles[static_cast<std::size_t>(corner / 3)], posed_.positions[v],
+                way, distance - slack, weight);
     }
 }
 
@@ -197,15 +196,15 @@ void Registration::add_outline(const SeenPerson& seen,
         if (nearest < 0) continue;
         const auto nx = static_cast<float>(nearest % camera_.width);
         const auto ny = static_cast<float>(nearest / camera_.width);
-        const Vec3f off = camera_.point(corner.x(), corner.y(), depth) -
-                          camera_.point(nx, ny, depth);
+        const Vec3f off =
+            camera_.point(corner.x(), corner.y(), depth) - camera_.point(nx, ny, depth);
         const float distance = off.norm();
         const float slack = kSlackCells * camera_.footprint(depth);
         if (distance < slack) continue;
         const float reach = std::min(distance, options.outline_reach_m);
         // A vertex stands for the cells that its surface fills.
-        const float cells = body_.level().areas[v] /
-                            (camera_.footprint(depth) * camera_.footprint(depth));
+        const float cells =
+            body_.level().areas[v] / (camera_.footprint(depth) * camera_.footprint(depth));
         const std::int32_t at = body_.corner_of(v);
         add_row(body_.joints_of(at / 3), body_.weights_of(at),
                 body_.level().triangles[static_cast<std::size_t>(at / 3)], posed_.positions[v],
@@ -267,8 +266,8 @@ double Registration::step(const SeenPerson& seen, const RegistrationOptions& opt
     move_ = -move_;
     const double turn = move_.tail(kUnknowns - 3).cwiseAbs().maxCoeff();
     const double shift = move_.head<3>().norm();
-    const double scale = std::min({1.0, kMostTurn / std::max(turn, 1e-9),
-                                   kMostShift / std::max(shift, 1e-9)});
+    const double scale =
+        std::min({1.0, kMostTurn / std::max(turn, 1e-9), kMostShift / std::max(shift, 1e-9)});
     move_ *= scale;
     pose = body::moved_pose(pose, move_.data());
     return turn * scale;

@@ -14,22 +14,22 @@ namespace toile::body_tracker {
 /// Deviations are of one cell's reading; informations of neighbours are no more independent than
 /// `cell_information` says.
 struct RegistrationOptions {
-    float deviation_m = 0.02f;        ///< of depth, along the surface's normal
-    float robust_m = 0.05f;           ///< scale of Geman and McClure's weight
-    float reach_m = 0.12f;            ///< farther depths on one ray are not one surface
-    float cell_information = 0.1f;    ///< how much of a reading each cell adds
-    float extra_weight = 0.25f;       ///< cells of the person where the body is not
+    float deviation_m = 0.02f;     ///< of depth, along the surface's normal
+    float robust_m = 0.05f;        ///< scale of Geman and McClure's weight
+    float reach_m = 0.12f;         ///< farther depths on one ray are not one surface
+    float cell_information = 0.1f; ///< how much of a reading each cell adds
+    float extra_weight = 0.25f;    ///< cells of the person where the body is not
     float extra_reach_m = 0.40f;
-    float outline_weight = 0.25f;     ///< places of the body where nobody is
+    float outline_weight = 0.25f; ///< places of the body where nobody is
     float outline_reach_m = 0.40f;
-    double pose_weight = 0.2;         ///< of the ranges of joints
+    double pose_weight = 0.2; ///< of the ranges of joints
     double damping = 0.02;
 };
 
 /// What the body should be near to, and how near: after a frame, where it was going.
 struct MotionPrior {
     body::Pose pose;
-    double place_m = 0.15;                         ///< deviation of the hips
+    double place_m = 0.15;                        ///< deviation of the hips
     std::array<double, body::kJointCount> turn{}; ///< deviation of each joint, radians
 };
 
@@ -97,7 +97,7 @@ class Registration {
     body::PosePrior prior_;
     PosedBody posed_;
     Drawing drawing_;
-    std::vector<std::uint32_t> visible_;     // vertices that the camera sees
+    std::vector<std::uint32_t> visible_; // vertices that the camera sees
     std::vector<float> seen_x_, seen_y_, seen_z_;
     std::array<float, kStride * kStride> sums_{};
     std::array<float, kStride> sum_{};

@@ -16,8 +16,7 @@ void Registration::linearise_shape(const SeenPerson& seen, const RegistrationOpt
     const body::ShapeRows& local = model.joint_components();
     Eigen::MatrixXf joints = Eigen::MatrixXf::Zero(3 * kJointCount, shapes);
     for (std::size_t j = 1; j < kJointCount; ++j) {
-        const auto p =
-            static_cast<std::size_t>(*body::joint_parent(static_cast<body::Joint>(j)));
+        const auto p = static_cast<std::size_t>(*body::joint_parent(static_cast<body::Joint>(j)));
         const auto at = static_cast<int>(3 * j), from = static_cast<int>(3 * p);
         joints.middleRows<3>(at) =
             joints.middleRows<3>(from) +
@@ -44,18 +43,19 @@ void Registration::linearise_shape(const SeenPerson& seen, const RegistrationOpt
         for (std::size_t c = 0; c < 3; ++c) {
             const std::uint32_t v = t[c];
             const Vec3f rest = posed_.rotations[v].conjugate() * place.normal;
-            row.head(shapes) += place.weights[c] * (rest.transpose() *
-                                level.components.block(static_cast<int>(3 * v), 0, 3, shapes)).transpose();
+            row.head(shapes) +=
+                place.weights[c] *
+                (rest.transpose() * level.components.block(static_cast<int>(3 * v), 0, 3, shapes))
+                    .transpose();
             for (std::size_t k = 0; k < 4; ++k) {
                 const float w = place.weights[c] * level.skin.weights[v][k];
                 if (w == 0.0f) continue;
                 const int j = level.skin.joints[v][k];
                 const Vec3f turned =
                     posed_.joints[static_cast<std::size_t>(j)].rotation.conjugate() * place.normal;
-                row.head(shapes) +=
-                    w * ((place.normal.transpose() * joints.middleRows<3>(3 * j)) -
-                         turned.transpose() * local.block(3 * j, 0, 3, shapes))
-                            .transpose();
+                row.head(shapes) += w * ((place.normal.transpose() * joints.middleRows<3>(3 * j)) -
+                                         turned.transpose() * local.block(3 * j, 0, 3, shapes))
+                                            .transpose();
             }
         }
         row.segment<3>(shapes) = place.normal;

@@ -9,16 +9,16 @@
 namespace toile::body_tracker {
 namespace {
 
-constexpr float kFarthest = 5.2f;     // metres: people beyond are not tracked
-constexpr float kFloorCut = 0.035f;   // what is lower is floor
-constexpr float kTilt = 0.6f;         // radians that a camera may lean
-constexpr float kLeastStep = 0.05f;   // metres in front of the scene
-constexpr float kStepShare = 0.012f;  // ... and of the squared depth, as noise grows
+constexpr float kFarthest = 5.2f;      // metres: people beyond are not tracked
+constexpr float kFloorCut = 0.035f;    // what is lower is floor
+constexpr float kTilt = 0.6f;          // radians that a camera may lean
+constexpr float kLeastStep = 0.05f;    // metres in front of the scene
+constexpr float kStepShare = 0.012f;   // ... and of the squared depth, as noise grows
 constexpr float kStillSeconds = 12.0f; // what stands so long is scene
 constexpr float kLearn = 0.05f;
 constexpr float kShortest = 0.5f, kTallest = 2.4f, kWidest = 2.6f;
 constexpr float kLeastArea = 0.10f, kMostArea = 2.2f; // m^2
-constexpr float kFlat = 0.02f;        // metres: rms distance from a plane
+constexpr float kFlat = 0.02f;                        // metres: rms distance from a plane
 constexpr float kFlatArea = 0.45f;
 constexpr std::size_t kFewCells = 60;
 constexpr std::size_t kMostPieces = 12;
@@ -28,8 +28,8 @@ constexpr int kFloorTries = 30;
 
 SceneWatch::SceneWatch(const GridCamera& camera, std::optional<geometry::Plane> floor)
     : camera_(camera), floor_(floor), floor_given_(floor.has_value()),
-      background_(camera.size(), 0.0f), still_s_(camera.size(), 0.0f),
-      nearer_(camera.size(), 0.0f), front_(camera.size(), 0), labels_(camera.size(), 0) {
+      background_(camera.size(), 0.0f), still_s_(camera.size(), 0.0f), nearer_(camera.size(), 0.0f),
+      front_(camera.size(), 0), labels_(camera.size(), 0) {
     stack_.reserve(camera.size());
     pieces_.reserve(kMostPieces + 1);
 }
@@ -68,8 +68,7 @@ bool SceneWatch::foreground(std::size_t cell, float depth, const Vec3f& at) cons
     return behind == 0.0f || depth < behind - kLeastStep - kStepShare * depth * depth;
 }
 
-void SceneWatch::grow_piece(const DepthGrid& grid, std::size_t seed,
-                            std::uint16_t label) noexcept {
+void SceneWatch::grow_piece(const DepthGrid& grid, std::size_t seed, std::uint16_t label) noexcept {
     stack_.clear();
     stack_.push_back(static_cast<std::uint32_t>(seed));
     labels_[seed] = label;
@@ -147,9 +146,9 @@ void SceneWatch::look(const DepthGrid& grid) noexcept {
         grow_piece(grid, i, ++label);
         Piece piece;
         if (!like_a_person(grid, label, piece)) continue;
-        const auto at = std::upper_bound(
-            pieces_.begin(), pieces_.end(), piece,
-            [](const Piece& a, const Piece& b) { return a.cells > b.cells; });
+        const auto at =
+            std::upper_bound(pieces_.begin(), pieces_.end(), piece,
+                             [](const Piece& a, const Piece& b) { return a.cells > b.cells; });
         pieces_.insert(at, piece);
         if (pieces_.size() > kMostPieces) pieces_.pop_back();
     }
@@ -172,9 +171,8 @@ void SceneWatch::learn(const DepthGrid& grid, std::span<const std::uint8_t> peop
         const float step = kLeastStep + kStepShare * d * d;
         if (behind == 0.0f) {
             // What may be a person waits until it was looked at.
-            const bool waits = std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& p) {
-                return p.label == labels_[i];
-            });
+            const bool waits = std::any_of(pieces_.begin(), pieces_.end(),
+                                           [&](const Piece& p) { return p.label == labels_[i]; });
             if (!waits) behind = d;
         } else if (d > behind + step) {
             behind = d;

@@ -5,9 +5,9 @@
 namespace toile::body_tracker {
 namespace {
 
-constexpr double kNewsOfAFrame = 0.5;  // frames of one pose err alike
-constexpr double kPosePrior = 4.0;     // 1/rad^2: hardly seen joints must not absorb the shape
-constexpr double kPriorWeight = 1.0;   // of the population (P5 eq. 23, whitened)
+constexpr double kNewsOfAFrame = 0.5; // frames of one pose err alike
+constexpr double kPosePrior = 4.0;    // 1/rad^2: hardly seen joints must not absorb the shape
+constexpr double kPriorWeight = 1.0;  // of the population (P5 eq. 23, whitened)
 
 } // namespace
 
@@ -37,8 +37,7 @@ void ShapeLearner::add(const Registration& registration, const SeenPerson& seen,
     const Eigen::LLT<Eigen::MatrixXd> factor(normal_.bottomRightCorner(pose, pose));
     const Eigen::MatrixXd coupled = factor.solve(normal_.bottomLeftCorner(pose, kShapes));
     const Eigen::MatrixXd information =
-        normal_.topLeftCorner(kShapes, kShapes) -
-        normal_.topRightCorner(kShapes, pose) * coupled;
+        normal_.topLeftCorner(kShapes, kShapes) - normal_.topRightCorner(kShapes, pose) * coupled;
     const Eigen::VectorXd gradient =
         gradient_.head(kShapes) - coupled.transpose() * gradient_.tail(pose);
     information_ += kNewsOfAFrame * information;

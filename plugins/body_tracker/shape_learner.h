@@ -1,5 +1,5 @@
-// A person's shape from the first seconds of tracking (P5 4.1): each good frame adds what it says of
-// the shape, whatever the pose was, until enough is known; then the shape is fixed.
+// A person's shape from the first seconds of tracking (P5 4.1): each good frame adds what it says
+// of the shape, whatever the pose was, until enough is known; then the shape is fixed.
 #pragma once
 
 #include "body_tracker/registration.h"

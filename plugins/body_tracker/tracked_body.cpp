@@ -25,8 +25,8 @@ TrackedBody::TrackedBody(const body::FitModel& model)
     for (const Triangle& t : level_.triangles) {
         TriangleJoints& out = triangle_joints_.emplace_back();
         for (std::size_t j = 0; j < kJointCount; ++j) {
-            const float most = std::max(
-                {level_.below[t[0]][j], level_.below[t[1]][j], level_.below[t[2]][j]});
+            const float most =
+                std::max({level_.below[t[0]][j], level_.below[t[1]][j], level_.below[t[2]][j]});
             if (most > kLeastShare) out.joints[out.count++] = static_cast<std::uint8_t>(j);
         }
     }
@@ -56,14 +56,14 @@ PosedBody TrackedBody::blank() const {
 
 void TrackedBody::pose(const body::Pose& pose, PosedBody& out) const noexcept {
     out.joints = body::forward_kinematics(skeleton_, pose);
-    const auto motions = body::to_dual_quaternions(body::skinning_transforms(skeleton_, out.joints));
+    const auto motions =
+        body::to_dual_quaternions(body::skinning_transforms(skeleton_, out.joints));
     const body::RotationVectors turns = body::rotation_vectors(pose);
     for (std::size_t v = 0; v < rest_.size(); ++v) {
         const RigidTransform skin =
             body::blend(motions, level_.skin.joints[v], level_.skin.weights[v]);
-        const Vec3f rest =
-            rest_[v] + level_.correctives.weights[v] *
-                           body::pose_features(turns, level_.correctives.joints[v]);
+        const Vec3f rest = rest_[v] + level_.correctives.weights[v] *
+                                          body::pose_features(turns, level_.correctives.joints[v]);
         out.positions[v] = skin * rest;
         out.rotations[v] = skin.rotation;
     }
@@ -80,8 +80,8 @@ Drawing TrackedBody::blank_drawing(const GridCamera& camera) const {
 void TrackedBody::draw(const PosedBody& posed, const GridCamera& camera,
                        Drawing& out) const noexcept {
     for (int y = out.low[1]; y <= out.high[1]; ++y)
-        std::fill_n(out.cells.begin() + y * camera.width + out.low[0],
-                    out.high[0] - out.low[0] + 1, DrawnCell{});
+        std::fill_n(out.cells.begin() + y * camera.width + out.low[0], out.high[0] - out.low[0] + 1,
+                    DrawnCell{});
     out.low = {camera.width, camera.height};
     out.high = {-1, -1};
     for (std::size_t v = 0; v < posed.positions.size(); ++v) {

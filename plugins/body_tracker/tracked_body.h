@@ -20,7 +20,7 @@ struct PosedBody {
 
 /// The nearest triangle in each cell.
 struct DrawnCell {
-    float depth = 0.0f;        ///< metres; 0: nothing drawn
+    float depth = 0.0f; ///< metres; 0: nothing drawn
     std::int32_t triangle = -1;
     float b1 = 0.0f, b2 = 0.0f; ///< weights of the triangle's second and third corner
 };
@@ -29,7 +29,7 @@ struct DrawnCell {
 struct Drawing {
     std::vector<DrawnCell> cells; ///< (width * height)
     std::array<int, 2> low{0, 0}, high{-1, -1};
-    std::vector<Vec3f> corners;   ///< (n) column, row, 1 / depth of each vertex
+    std::vector<Vec3f> corners; ///< (n) column, row, 1 / depth of each vertex
 };
 
 /// Joints whose turn moves a triangle, and how much of each corner.

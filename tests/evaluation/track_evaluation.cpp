@@ -163,9 +163,8 @@ class Visibility {
 /// A walk through random poses within the joints' limits, as a track file.
 fs::path random_walk(const body::TestPerson& person, double seconds, std::uint64_t seed) {
     toile::Random random(seed);
-    const fs::path file = fs::temp_directory_path() /
-                          ("toile_walk_" + std::to_string(getpid()) + "_" +
-                           std::to_string(seed) + ".jsonl");
+    const fs::path file = fs::temp_directory_path() / ("toile_walk_" + std::to_string(getpid()) +
+                                                       "_" + std::to_string(seed) + ".jsonl");
     std::ofstream out(file);
     float yaw = 0.0f;
     body::Pose from = body::rest_pose(person.skeleton), to = from;
@@ -174,8 +173,8 @@ fs::path random_walk(const body::TestPerson& person, double seconds, std::uint64
         yaw += static_cast<float>(random.uniform(-0.6, 0.6));
         pose.rotations[0] = body::about(Vec3f::UnitY(), yaw) * pose.rotations[0];
         pose.hips_position = Vec3f::Zero();
-        pose.hips_position.y() = -body::lowest_sole(
-            person.skeleton, body::forward_kinematics(person.skeleton, pose));
+        pose.hips_position.y() =
+            -body::lowest_sole(person.skeleton, body::forward_kinematics(person.skeleton, pose));
         return pose;
     };
     const auto frames = static_cast<int>(seconds * kRate);
@@ -221,14 +220,18 @@ double share(std::size_t a, std::size_t b) {
 void print(const std::string& name, Sums& s) {
     std::sort(s.ms.begin(), s.ms.end());
     const auto at = [&](double q) {
-        return s.ms.empty() ? 0.0 : s.ms[static_cast<std::size_t>(q * static_cast<double>(s.ms.size() - 1))];
+        return s.ms.empty()
+                   ? 0.0
+                   : s.ms[static_cast<std::size_t>(q * static_cast<double>(s.ms.size() - 1))];
     };
-    std::printf("%-34s n %4zu vis %5.1f all %5.1f mm, tracked %5.1f %%, <10cm %5.1f %%, frames %5.1f %%, "
-                "failed %5.1f %%, ms %.1f p95 %.1f max %.1f\n",
-                name.c_str(), s.frames, s.visible / static_cast<double>(std::max<std::size_t>(1, s.visible_count)),
-                s.all / static_cast<double>(std::max<std::size_t>(1, s.all_count)), share(s.called, s.frames),
-                share(s.near, s.visible_count), share(s.good_frames, s.frames),
-                share(s.failed_frames, s.frames), at(0.5), at(0.95), at(1.0));
+    std::printf(
+        "%-34s n %4zu vis %5.1f all %5.1f mm, tracked %5.1f %%, <10cm %5.1f %%, frames %5.1f %%, "
+        "failed %5.1f %%, ms %.1f p95 %.1f max %.1f\n",
+        name.c_str(), s.frames,
+        s.visible / static_cast<double>(std::max<std::size_t>(1, s.visible_count)),
+        s.all / static_cast<double>(std::max<std::size_t>(1, s.all_count)),
+        share(s.called, s.frames), share(s.near, s.visible_count), share(s.good_frames, s.frames),
+        share(s.failed_frames, s.frames), at(0.5), at(0.95), at(1.0));
     std::fflush(stdout);
 }
 
@@ -292,15 +295,16 @@ class Evaluation {
         who.motion = one.motion;
         Vec3f middle = Vec3f::Zero();
         for (std::uint32_t f = 0; f < scenario.frames; ++f)
-            middle += body::sample(motion, f / kRate).hips_position / static_cast<float>(scenario.frames);
+            middle +=
+                body::sample(motion, f / kRate).hips_position / static_cast<float>(scenario.frames);
         who.position = Vec3f(-middle.x(), 0.0f, -middle.z());
         who.turn = random.uniform(-0.5, 0.5);
         who.position = body::about(Vec3f::UnitY(), static_cast<float>(who.turn)) * who.position;
         scenario.people.push_back(who);
         sensor::CameraSettings camera = sensor::camera_of(sensor::CameraModel::kinect_v1);
         const double distance = random.uniform(2.2, 3.3), height = random.uniform(0.8, 1.8);
-        camera.world_from_camera = sensor::look_at(
-            Vec3d(0.0, height, distance), Vec3d(random.uniform(-0.15, 0.15), 0.95, 0.0));
+        camera.world_from_camera = sensor::look_at(Vec3d(0.0, height, distance),
+                                                   Vec3d(random.uniform(-0.15, 0.15), 0.95, 0.0));
         camera.noise = settings_.noise == "full" ? sensor::full_noise(camera.model)
                                                  : sensor::usual_noise(camera.model);
         scenario.cameras.push_back(camera);
@@ -320,10 +324,11 @@ class Evaluation {
                             static_cast<std::int64_t>(1e9 * scenario.time_of(f)));
             sums.ms.push_back(cpu_ms() - began);
             compare(simulator, tracking, visibility, sums);
-            if (!settings_.pictures.empty() && f % static_cast<std::uint32_t>(settings_.picture_every) == 0)
-                save_picture(tracking, settings_.pictures /
-                                           (one.name + "_" + std::to_string(seed) + "_" +
-                                            std::to_string(1000 + f) + ".png"));
+            if (!settings_.pictures.empty() &&
+                f % static_cast<std::uint32_t>(settings_.picture_every) == 0)
+                save_picture(tracking,
+                             settings_.pictures / (one.name + "_" + std::to_string(seed) + "_" +
+                                                   std::to_string(1000 + f) + ".png"));
         }
         return sums;
     }
@@ -346,7 +351,9 @@ class Evaluation {
         bool good = true, failed = false;
         for (std::size_t j = 0; j < kJointCount; ++j) {
             const double off =
-                called ? 1000.0 * static_cast<double>((place * person.joints()[j].translation - truth[j].translation).norm())
+                called ? 1000.0 * static_cast<double>((place * person.joints()[j].translation -
+                                                       truth[j].translation)
+                                                          .norm())
                        : 500.0;
             sums.all += off;
             ++sums.all_count;
@@ -397,7 +404,8 @@ void run(const Settings& settings) {
     print("all", all);
     for (std::size_t j = 0; j < kJointCount; ++j)
         std::printf("  %-16s %5.1f\n", std::string(body::joint_name(static_cast<Joint>(j))).c_str(),
-                    all.joint[j] / static_cast<double>(std::max<std::size_t>(1, all.joint_count[j])));
+                    all.joint[j] /
+                        static_cast<double>(std::max<std::size_t>(1, all.joint_count[j])));
 }
 
 } // namespace
