@@ -51,8 +51,7 @@ std::optional<Vec3f> TrackPicture::pixel_of(const Vec3f& world) const {
 
 void TrackPicture::dot(int x, int y, const Vec3f& color, float share) {
     if (x < 0 || y < 0 || x >= image_.width || y >= image_.height) return;
-    std::uint8_t* p =
-        image_.pixels.data() + 4 * (static_cast<std::size_t>(y) * image_.width + x);
+    std::uint8_t* p = image_.pixels.data() + 4 * (static_cast<std::size_t>(y) * image_.width + x);
     for (int k = 0; k < 3; ++k)
         p[k] = static_cast<std::uint8_t>(
             std::clamp((1.0f - share) * p[k] + share * 255.0f * color[k], 0.0f, 255.0f));
@@ -64,7 +63,8 @@ void TrackPicture::draw_background(const pipeline::SensorFrame& pictures) {
         for (int x = 0; x < w; ++x) {
             const std::size_t i = static_cast<std::size_t>(y) * w + x;
             const float d = pictures.depth.metres[i];
-            const float shade = d > 0.0f ? std::clamp((kFar - d) / (kFar - kNear), 0.08f, 1.0f) : 0.0f;
+            const float shade =
+                d > 0.0f ? std::clamp((kFar - d) / (kFar - kNear), 0.08f, 1.0f) : 0.0f;
             std::uint8_t* left =
                 image_.pixels.data() + 4 * (static_cast<std::size_t>(y) * image_.width + x);
             std::uint8_t* right = left + 4 * static_cast<std::size_t>(w);
@@ -93,7 +93,8 @@ void TrackPicture::draw_body(const pipeline::BodyFrame& person, std::uint64_t sh
     for (const Vec3f& p : posed->positions) {
         const auto at = pixel_of(p);
         if (!at) continue;
-        const int x = static_cast<int>(std::lround(at->x())), y = static_cast<int>(std::lround(at->y()));
+        const int x = static_cast<int>(std::lround(at->x())),
+                  y = static_cast<int>(std::lround(at->y()));
         if (x < 0 || y < 0 || x >= w || y >= image_.height) continue;
         // What lies far behind the reading is the body's other side, or hidden.
         const float real = depth.metres[static_cast<std::size_t>(y) * w + x];
@@ -118,7 +119,8 @@ void TrackPicture::line(const Vec2f& from, const Vec2f& to, const Vec3f& color, 
 void TrackPicture::draw_bones(const pipeline::BodyFrame& person) {
     const int w = image_.width / 2;
     for (std::size_t j = 1; j < body::kJointCount; ++j) {
-        const auto parent = static_cast<std::size_t>(*body::joint_parent(static_cast<body::Joint>(j)));
+        const auto parent =
+            static_cast<std::size_t>(*body::joint_parent(static_cast<body::Joint>(j)));
         const auto place = [&](std::size_t joint) {
             const float* p = person.joints[joint].position;
             return pixel_of(Vec3f(p[0], p[1], p[2]));

@@ -19,8 +19,7 @@ std::unique_ptr<host::Instance> find_tracker(host::Registry& registry, host::Ser
         if (instance->find<toile_body_fit>() != nullptr) continue;
         auto info = host::sized<toile_body_source_info>();
         const auto& table = instance->table<toile_body_source>();
-        instance->call("describe",
-                       [&](toile_instance* i) { return table.describe(i, &info); });
+        instance->call("describe", [&](toile_instance* i) { return table.describe(i, &info); });
         if (info.input == TOILE_SOURCE_FRAMES) return instance;
     }
     throw Error("no plugin that tracks people in depth frames was found; `toile plugin list` shows "
@@ -31,8 +30,7 @@ void wish_for(host::Instance& tracker, const char* id, bool on) {
     const auto* parameters = tracker.find<toile_parameters>();
     if (parameters == nullptr || parameters->set == nullptr) return;
     // One that does not know the parameter works as it does.
-    (void)tracker.frame(
-        [&](toile_instance* i) { return parameters->set(i, id, on ? 1.0 : 0.0); });
+    (void)tracker.frame([&](toile_instance* i) { return parameters->set(i, id, on ? 1.0 : 0.0); });
     (void)tracker.take_error();
 }
 
@@ -60,9 +58,8 @@ PeopleSource::PeopleSource(const std::string& uri, host::Registry& registry,
     setup.streams = &stream;
     setup.body = wish.body == nullptr ? nullptr : &wish.body->abi();
     setup.max_people = wish.most_people;
-    tracker_->call("begin", [&](toile_instance* i) {
-        return table_->begin(i, &setup, job.handle());
-    });
+    tracker_->call("begin",
+                   [&](toile_instance* i) { return table_->begin(i, &setup, job.handle()); });
 }
 
 PeopleSource::~PeopleSource() {
@@ -94,9 +91,8 @@ void PeopleSource::read_people(PeopleFrame& out) {
         people_[i].joints = host::view_mut(joints_[i]);
     }
     auto count = static_cast<std::uint32_t>(people_.size());
-    tracker_->call("result", [&](toile_instance* i) {
-        return table_->result(i, people_.data(), &count);
-    });
+    tracker_->call("result",
+                   [&](toile_instance* i) { return table_->result(i, people_.data(), &count); });
     out.people.clear();
     out.shapes.clear();
     for (std::uint32_t i = 0; i < std::min<std::size_t>(count, people_.size()); ++i) {

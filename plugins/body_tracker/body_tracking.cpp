@@ -11,7 +11,8 @@ constexpr float kLongestStep = 1.0f; // seconds
 constexpr float kOwn = 0.12f;        // metres from a person's bones: that person's
 constexpr float kGrow = 0.45f;       // as far may what hangs on such cells reach
 constexpr float kSamePerson = 0.9f;  // metres between where somebody went and came back
-constexpr std::uint32_t kDoubts = 6; // frames before a piece counts as scene
+constexpr std::uint32_t kDoubts = 3; // searches before a piece counts as scene
+constexpr float kSamePiece = 0.5f;   // metres that one moves between two frames at most
 constexpr std::size_t kFewCells = 80;
 
 std::optional<geometry::Plane> floor_of(const CameraPlace& place) {
@@ -95,8 +96,21 @@ void BodyTracking::share_out() noexcept {
 void BodyTracking::follow_all(float dt) noexcept {
     for (const auto& person : people_) {
         if (!person->active()) continue;
+        const std::uint32_t id = person->id();
         person->follow(seen_by(*person), scene_.up(), dt);
+        if (!person->active()) forget(id, *person);
         if (person->unseen_s() > options_.forget_s) person->stop();
+    }
+}
+
+/// Somebody who turned out to be nobody: the piece is doubted, the number is used again.
+void BodyTracking::forget(std::uint32_t id, PersonTrack& person) noexcept {
+    if (id + 1 == next_id_) --next_id_;
+    for (const Piece& piece : scene_.people_like()) {
+        std::size_t shared = 0;
+        for (std::size_t i = 0; i < owner_.size(); ++i)
+            shared += scene_.labels()[i] == piece.label && person.mask().cells[i] != 0 ? 1 : 0;
+        if (2 * shared > piece.cells) doubt(piece);
     }
 }
 
@@ -122,27 +136,30 @@ PersonTrack* BodyTracking::remembered_near(const Vec3f& place) noexcept {
     return nullptr;
 }
 
-/// Looks for somebody new in one piece a frame.
+/// Looks for somebody new, once a frame.
 void BodyTracking::welcome() noexcept {
-    bool doubtful = false;
     for (const Piece& piece : scene_.people_like()) {
-        PersonTrack* person = remembered_near(piece.middle);
-        const bool known = person != nullptr;
-        if (!known) person = free_track();
-        if (person == nullptr) break;
+        PersonTrack* const known = remembered_near(piece.middle);
+        PersonTrack* const person = known != nullptr ? known : free_track();
+        if (person == nullptr) return;
         if (!mask_piece(piece, *person)) continue;
-        const std::uint32_t id = known ? person->id() : next_id_;
-        if (person->start(id, seen_by(*person), scene_.up())) {
-            if (!known) ++next_id_;
+        if (person->start(known != nullptr ? known->id() : next_id_, seen_by(*person),
+                          scene_.up())) {
+            if (known == nullptr) ++next_id_;
             for (std::size_t i = 0; i < owner_.size(); ++i)
                 if (person->mask().cells[i] != 0) owner_[i] = 1;
         } else {
-            doubtful = true;
-            if (doubtful_frames_ >= kDoubts) scene_.dismiss(grid_, piece.label);
+            doubt(piece);
         }
-        break;
+        return;
     }
-    doubtful_frames_ = doubtful && doubtful_frames_ < kDoubts ? doubtful_frames_ + 1 : 0;
+}
+
+/// What was no person several times in a row is scene.
+void BodyTracking::doubt(const Piece& piece) noexcept {
+    doubts_ = (piece.middle - doubted_).norm() < kSamePiece ? doubts_ + 1 : 1;
+    doubted_ = piece.middle;
+    if (doubts_ >= kDoubts) scene_.dismiss(grid_, piece.label);
 }
 
 void BodyTracking::update(const float* metres, std::int64_t timestamp_ns) noexcept {

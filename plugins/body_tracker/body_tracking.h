@@ -41,6 +41,8 @@ class BodyTracking {
     void share_out() noexcept;
     void follow_all(float dt) noexcept;
     void welcome() noexcept;
+    void doubt(const Piece& piece) noexcept;
+    void forget(std::uint32_t id, PersonTrack& person) noexcept;
     [[nodiscard]] SeenPerson seen_by(PersonTrack& person) const noexcept;
     [[nodiscard]] bool mask_piece(const Piece& piece, PersonTrack& person) const noexcept;
     [[nodiscard]] PersonTrack* remembered_near(const Vec3f& place) noexcept;
@@ -54,7 +56,8 @@ class BodyTracking {
     std::vector<std::uint8_t> owner_; ///< (cells) 1 + person, 0: nobody's
     std::vector<std::uint32_t> stack_;
     std::uint32_t next_id_ = 1;
-    std::uint32_t doubtful_frames_ = 0; ///< in a row with a piece that is no person
+    Vec3f doubted_ = Vec3f::Zero(); ///< where a piece was no person
+    std::uint32_t doubts_ = 0;      ///< times in a row
     std::int64_t last_ns_ = 0;
     bool started_ = false;
 };

@@ -49,16 +49,19 @@ DepthGrid DepthReducer::blank() const {
 float DepthReducer::cell_depth(const float* metres, int column, int row) const noexcept {
     const int x0 = std::max(0, column), x1 = std::min(width_, column + step_);
     const int y0 = std::max(0, row), y1 = std::min(height_, row + step_);
-    float nearest = kFarthest;
+    float nearest = kFarthest, farthest = 0.0f, total = 0.0f;
     int seen = 0;
     for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x) {
             const float d = metres[y * width_ + x];
-            if (!(d > kNearest && d < kFarthest)) continue;
-            nearest = std::min(nearest, d);
-            ++seen;
+            const bool valid = d > kNearest && d < kFarthest;
+            nearest = valid && d < nearest ? d : nearest;
+            farthest = valid && d > farthest ? d : farthest;
+            total += valid ? d : 0.0f;
+            seen += valid ? 1 : 0;
         }
     if (4 * seen < step_ * step_) return 0.0f;
+    if (farthest <= nearest + kOneSurface) return total / static_cast<float>(seen);
     float sum[2] = {0.0f, 0.0f};
     int count[2] = {0, 0};
     for (int y = y0; y < y1; ++y)

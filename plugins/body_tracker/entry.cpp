@@ -175,8 +175,8 @@ class BodyTracker {
 
     void tell_shape(const tracker::PersonTrack& track, Told& told, toile_person& out) {
         if (told.shape == nullptr || told.version != track.shape_version()) {
-            told.shape = std::make_unique<tracker::TrackedShape>(*model_, track.body().shape(),
-                                                                 ++revision_);
+            told.shape =
+                std::make_unique<tracker::TrackedShape>(*model_, track.body().shape(), ++revision_);
             told.version = track.shape_version();
         }
         out.has_new_body = 1;

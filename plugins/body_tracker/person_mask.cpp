@@ -1,5 +1,7 @@
 #include "body_tracker/person_mask.h"
 
+#include <algorithm>
+
 namespace toile::body_tracker {
 namespace {
 
@@ -26,30 +28,42 @@ struct Sweep {
 
 void find_nearest(const GridCamera& camera, PersonMask& mask) noexcept {
     mask.count = 0;
-    for (std::size_t i = 0; i < mask.cells.size(); ++i) {
-        const bool person = mask.cells[i] != 0;
-        mask.nearest[i] = person ? static_cast<std::int32_t>(i) : -1;
-        mask.count += person ? 1 : 0;
-    }
+    mask.low = {camera.width, camera.height};
+    mask.high = {-1, -1};
+    std::size_t i = 0;
+    for (int y = 0; y < camera.height; ++y)
+        for (int x = 0; x < camera.width; ++x, ++i) {
+            mask.nearest[i] = -1;
+            if (mask.cells[i] == 0) continue;
+            mask.nearest[i] = static_cast<std::int32_t>(i);
+            ++mask.count;
+            mask.low = {std::min(mask.low[0], x), std::min(mask.low[1], y)};
+            mask.high = {std::max(mask.high[0], x), std::max(mask.high[1], y)};
+        }
+    if (mask.count == 0) return;
+    const int x0 = std::max(0, mask.low[0] - kMaskReach);
+    const int x1 = std::min(camera.width - 1, mask.high[0] + kMaskReach);
+    const int y0 = std::max(0, mask.low[1] - kMaskReach);
+    const int y1 = std::min(camera.height - 1, mask.high[1] + kMaskReach);
     const Sweep sweep{camera, mask};
-    for (int y = 0; y < camera.height; ++y) {
-        for (int x = 0; x < camera.width; ++x) {
+    for (int y = y0; y <= y1; ++y) {
+        for (int x = x0; x <= x1; ++x) {
             sweep.take(x, y, -1, 0);
             sweep.take(x, y, -1, -1);
             sweep.take(x, y, 0, -1);
             sweep.take(x, y, 1, -1);
         }
-        for (int x = camera.width - 1; x >= 0; --x)
+        for (int x = x1; x >= x0; --x)
             sweep.take(x, y, 1, 0);
     }
-    for (int y = camera.height - 1; y >= 0; --y) {
-        for (int x = camera.width - 1; x >= 0; --x) {
+    for (int y = y1; y >= y0; --y) {
+        for (int x = x1; x >= x0; --x) {
             sweep.take(x, y, 1, 0);
             sweep.take(x, y, 1, 1);
             sweep.take(x, y, 0, 1);
             sweep.take(x, y, -1, 1);
         }
-        for (int x = 0; x < camera.width; ++x)
+        for (int x = x0; x <= x1; ++x)
             sweep.take(x, y, -1, 0);
     }
 }

@@ -13,9 +13,15 @@ using body::kJointCount;
 
 constexpr float kUsualStep = 1.0f / 30.0f; // seconds
 constexpr float kKeepsMoving = 0.8f;       // share of the last motion that goes on
-constexpr float kSearchAfter = 3;          // failures in a row
+constexpr int kSearchAfter = 2;            // failures in a row
 constexpr float kNobody = 0.45f;           // not explained: what was found is no person
+constexpr float kSurelyNobody = 0.6f;
+constexpr int kFirstSteps = 2;
+constexpr int kTryTurnedEvery = 30; // frames
+constexpr int kTurnedSteps = 6;
+constexpr float kTurnedBetter = 0.85f;
 constexpr std::size_t kFewCells = 40;
+constexpr float kUsualHeight = 1.70f, kShortest = 1.45f, kTallest = 2.05f; // metres
 constexpr float kFullView = 0.30f; // share of a part's skin seen that gives all confidence
 
 struct BoneEnds {
@@ -97,7 +103,7 @@ float BoneDistance::operator()(const Vec3f& point) const noexcept {
 
 PersonTrack::PersonTrack(const body::FitModel& model, const GridCamera& camera,
                          const TrackOptions& options)
-    : options_(options), body_(model), registration_(body_, camera), search_(body_, camera),
+    : options_(options), body_(model), registration_(body_, camera), search_(body_),
       smoother_(options.smoothing), mask_(camera) {
     const body::FitLevel& level = body_.level();
     for (const Triangle& t : level.triangles) {
@@ -119,21 +125,43 @@ bool PersonTrack::failed() const noexcept {
 }
 
 bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& up) noexcept {
-    body_.set_shape(body::ShapeVector::Zero(body_.shape().size()));
+    search_.restart();
     learner_.reset();
-    const FoundPose found = search_.find(seen, up, nullptr, registration_);
-    if (found.agreement.unexplained > kNobody) return false;
+    const float height = PoseSearch::height_of(seen, up).value_or(kUsualHeight);
+    // Whoever bends or sits is taller than that.
+    body_.set_stature(std::clamp(height, kShortest, kTallest));
+    (void)search_.advance(seen, up, nullptr, registration_);
+    pose_ = search_.provisional();
+    for (int step = 0; step < kFirstSteps; ++step)
+        (void)registration_.step(seen, options_.registration, nullptr, pose_);
+    agreement_ = registration_.judge(seen, pose_);
+    if (agreement_.unexplained > kSurelyNobody) return false;
     id_ = id;
     ++shape_version_;
-    pose_ = last_ = found.pose;
-    agreement_ = found.agreement;
-    moving_ = false;
-    failures_ = 0;
+    last_ = pose_;
+    moving_ = sure_ = false;
+    recovering_ = true;
+    failures_ = since_turned_ = 0;
     unseen_s_ = 0.0f;
     smoother_.reset();
     settle(seen, 0.0f);
     following_ = Following::detected;
     return true;
+}
+
+/// The other facing fits nearly as well now and then; when it fits better it is right.
+void PersonTrack::try_turned(const SeenPerson& seen) noexcept {
+    if (++since_turned_ < kTryTurnedEvery || failed()) return;
+    since_turned_ = 0;
+    body::Pose pose = PoseSearch::turned_around(pose_);
+    for (int step = 0; step < kTurnedSteps; ++step)
+        (void)registration_.step(seen, options_.registration, nullptr, pose);
+    const Agreement turned = registration_.judge(seen, pose);
+    if (turned.badness() < kTurnedBetter * agreement_.badness()) {
+        pose_ = pose;
+        moving_ = false;
+    }
+    agreement_ = registration_.judge(seen, pose_);
 }
 
 void PersonTrack::predict(float dt) noexcept {
@@ -155,13 +183,24 @@ void PersonTrack::predict(float dt) noexcept {
     bones_.set(body::forward_kinematics(body_.skeleton(), motion_.pose));
 }
 
-void PersonTrack::search(const SeenPerson& seen, const Vec3f& up) noexcept {
-    const FoundPose found = search_.find(seen, up, &pose_, registration_);
-    if (found.agreement.badness() < agreement_.badness()) {
-        pose_ = found.pose;
-        moving_ = false;
+/// Searches in frame after frame while the pose so far is followed on.
+void PersonTrack::recover(const SeenPerson& seen, const Vec3f& up) noexcept {
+    if (!recovering_) search_.restart();
+    recovering_ = true;
+    const auto found = search_.advance(seen, up, sure_ ? &pose_ : nullptr, registration_);
+    if (found) {
+        if (found->agreement.badness() < agreement_.badness()) {
+            pose_ = found->pose;
+            moving_ = false;
+            if (!sure_) smoother_.reset();
+        }
+        recovering_ = false;
+        failures_ = 0;
     }
     agreement_ = registration_.judge(seen, pose_);
+    if (!found || sure_) return;
+    sure_ = true;
+    if (agreement_.unexplained > kNobody) stop();
 }
 
 void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noexcept {
@@ -176,23 +215,29 @@ void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noex
     const body::Pose before = pose_;
     body::Pose pose = motion_.pose;
     for (int step = 0; step < options_.steps; ++step)
-        (void)registration_.step(seen, options_.registration, &motion_, pose);
+        if (registration_.step(seen, options_.registration, &motion_, pose) < options_.settled_rad)
+            break;
     pose_ = pose;
     last_ = before;
     moving_ = true;
     agreement_ = registration_.judge(seen, pose_);
     failures_ = failed() ? failures_ + 1 : 0;
-    if (options_.recover && static_cast<float>(failures_) >= kSearchAfter) {
-        search(seen, up);
-        failures_ = failed() ? 1 : 0;
+    if (!sure_ || (options_.recover && failures_ >= kSearchAfter)) {
+        recover(seen, up);
+    } else {
+        recovering_ = false;
+        try_turned(seen);
     }
+    if (!active()) return;
     settle(seen, dt);
 }
 
 /// What follows from the frame's pose.
 void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
-    following_ = failed() ? Following::uncertain : Following::tracked;
-    if (options_.learn_shape && !learner_.done() && !failed()) {
+    following_ = failed() ? Following::uncertain
+                 : !sure_ ? Following::detected
+                          : Following::tracked;
+    if (options_.learn_shape && sure_ && !learner_.done() && !failed()) {
         learner_.add(registration_, seen, options_.registration, body_.shape());
         if (learner_.due()) {
             body::ShapeVector shape = body_.shape();

@@ -12,7 +12,8 @@ enum class Following : std::uint8_t { invalid, detected, tracked, uncertain, los
 struct TrackOptions {
     RegistrationOptions registration;
     SmoothingOptions smoothing;
-    int steps = 4; ///< Gauss-Newton steps a frame
+    int steps = 4;              ///< Gauss-Newton steps a frame at most
+    double settled_rad = 0.012; ///< a step that turns no joint farther is the last
     bool learn_shape = true;
     bool recover = true;          ///< searches anew after a failure
     float failed_error_m = 0.06f; ///< mean distance, and ...
@@ -41,7 +42,9 @@ class PersonTrack {
   public:
     PersonTrack(const body::FitModel& model, const GridCamera& camera, const TrackOptions& options);
 
-    /// Somebody new: false when what is seen is nobody.
+    /// Looks for somebody new: false when what is seen is nobody. At first the pose is rough; the
+    /// next frames' `follow` goes on with the search, and stops the track when nobody was there
+    /// after all.
     bool start(std::uint32_t id, const SeenPerson& seen, const Vec3f& up) noexcept;
     /// Where the person should be after `dt` seconds; before `follow` of the same frame.
     void predict(float dt) noexcept;
@@ -76,9 +79,10 @@ class PersonTrack {
 
   private:
     void settle(const SeenPerson& seen, float dt) noexcept;
-    void search(const SeenPerson& seen, const Vec3f& up) noexcept;
+    void recover(const SeenPerson& seen, const Vec3f& up) noexcept;
     void rate_joints(const SeenPerson& seen) noexcept;
     void show(float dt) noexcept;
+    void try_turned(const SeenPerson& seen) noexcept;
     [[nodiscard]] bool failed() const noexcept;
 
     TrackOptions options_;
@@ -97,6 +101,9 @@ class PersonTrack {
     bool moving_ = false; ///< last_ is of the frame before
     Agreement agreement_;
     int failures_ = 0; ///< frames in a row
+    bool recovering_ = false;
+    bool sure_ = false;    ///< that it is somebody: the first search is over
+    int since_turned_ = 0; ///< frames since the other facing was tried
     float unseen_s_ = 0.0f;
     body::JointTransforms joints_;
     std::array<Vec3f, body::kJointCount> velocity_{}, turning_{};

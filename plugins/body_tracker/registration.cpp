@@ -96,10 +96,15 @@ void Registration::add_row(const TriangleJoints& joints, const std::array<float,
 
 void Registration::add_readings(const SeenPerson& seen,
                                 const RegistrationOptions& options) noexcept {
-    const float information =
-        options.cell_information / (options.deviation_m * options.deviation_m);
-    for (int y = drawing_.low[1]; y <= drawing_.high[1]; ++y)
-        for (int x = drawing_.low[0]; x <= drawing_.high[0]; ++x) {
+    // Every n-th cell, shifted from row to row; each stands for n.
+    const auto every = static_cast<int>(
+        std::max<std::size_t>(1, (seen.mask.count + options.most_cells / 2) / options.most_cells));
+    const float information = static_cast<float>(every) * options.cell_information /
+                              (options.deviation_m * options.deviation_m);
+    for (int y = std::max(drawing_.low[1], seen.mask.low[1]);
+         y <= std::min(drawing_.high[1], seen.mask.high[1]); ++y)
+        for (int x = drawing_.low[0] + (2 * y + every - drawing_.low[0] % every) % every;
+             x <= drawing_.high[0]; x += every) {
             const auto i = static_cast<std::size_t>(y * camera_.width + x);
             const DrawnCell& cell = drawing_.cells[i];
             if (cell.depth == 0.0f || seen.mask.cells[i] == 0) continue;
@@ -149,35 +154,37 @@ void Registration::add_extra(const SeenPerson& seen, const RegistrationOptions& 
                               static_cast<float>(kExtraEvery) /
                               (options.deviation_m * options.deviation_m);
     std::size_t number = 0;
-    for (std::size_t i = 0; i < seen.mask.cells.size(); ++i) {
-        if (seen.mask.cells[i] == 0) continue;
-        const float depth = seen.grid.depth[i];
-        const DrawnCell& cell = drawing_.cells[i];
-        if (cell.depth != 0.0f && std::abs(cell.depth - depth) < options.reach_m) continue;
-        if (number++ % kExtraEvery != 0) continue;
-        const Vec3f p =
-            camera_.point(static_cast<float>(static_cast<int>(i) % camera_.width),
-                          static_cast<float>(static_cast<int>(i) / camera_.width), depth);
-        float best = 1e9f;
-        std::size_t at = 0;
-        for (std::size_t k = 0; k < visible_.size(); ++k) {
-            const float dx = seen_x_[k] - p.x(), dy = seen_y_[k] - p.y(), dz = seen_z_[k] - p.z();
-            const float squared = dx * dx + dy * dy + dz * dz;
-            if (squared < best) best = squared, at = k;
+    for (int y = seen.mask.low[1]; y <= seen.mask.high[1]; ++y)
+        for (int x = seen.mask.low[0]; x <= seen.mask.high[0]; ++x) {
+            const auto i = static_cast<std::size_t>(y * camera_.width + x);
+            if (seen.mask.cells[i] == 0) continue;
+            const float depth = seen.grid.depth[i];
+            const DrawnCell& cell = drawing_.cells[i];
+            if (cell.depth != 0.0f && std::abs(cell.depth - depth) < options.reach_m) continue;
+            if (number++ % kExtraEvery != 0) continue;
+            const Vec3f p = camera_.point(static_cast<float>(x), static_cast<float>(y), depth);
+            float best = 1e9f;
+            std::size_t at = 0;
+            for (std::size_t k = 0; k < visible_.size(); ++k) {
+                const float dx = seen_x_[k] - p.x(), dy = seen_y_[k] - p.y(),
+                            dz = seen_z_[k] - p.z();
+                const float squared = dx * dx + dy * dy + dz * dz;
+                if (squared < best) best = squared, at = k;
+            }
+            const float distance = std::sqrt(best);
+            const float slack = kSlackCells * camera_.footprint(depth);
+            if (distance < slack || distance > options.extra_reach_m) continue;
+            const std::uint32_t v = visible_[at];
+            const Vec3f off = posed_.positions[v] - p;
+            const Vec3f way = off / distance;
+            const float weight =
+                information * geman_mcclure(distance, 0.5f * options.extra_reach_m);
+            // Along the way with all weight, across it with none: the nearest place may slide.
+            const std::int32_t corner = body_.corner_of(v);
+            add_row(body_.joints_of(corner / 3), body_.weights_of(corner),
+                    body_.level().triangles[static_cast<std::size_t>(corner / 3)],
+                    posed_.positions[v], way, distance - slack, weight);
         }
-        const float distance = std::sqrt(best);
-        const float slack = kSlackCells * camera_.footprint(depth);
-        if (distance < slack || distance > options.extra_reach_m) continue;
-        const std::uint32_t v = visible_[at];
-        const Vec3f off = posed_.positions[v] - p;
-        const Vec3f way = off / distance;
-        const float weight = information * geman_mcclure(distance, 0.5f * options.extra_reach_m);
-        // Along the way with all weight, across it with none: the nearest place may slide.
-        const std::int32_t corner = body_.corner_of(v);
-        add_row(body_.joints_of(corner / 3), body_.weights_of(corner),
-                body_.level().triangles[static_cast<std::size_t>(corner / 3)], posed_.positions[v],
-                way, distance - slack, weight);
-    }
 }
 
 void Registration::add_outline(const SeenPerson& seen,
@@ -273,30 +280,38 @@ double Registration::step(const SeenPerson& seen, const RegistrationOptions& opt
     return turn * scale;
 }
 
-Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose) noexcept {
-    draw_pose(pose);
+Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bool whole) noexcept {
+    if (whole)
+        body_.pose(pose, posed_);
+    else
+        body_.place(pose, posed_);
+    body_.draw(posed_, camera_, drawing_);
     Agreement out;
+    out.cells = seen.mask.count;
     double sum = 0.0;
     std::size_t explained = 0, lacking = 0;
-    for (std::size_t i = 0; i < seen.mask.cells.size(); ++i) {
-        const DrawnCell& cell = drawing_.cells[i];
-        const float real = seen.grid.depth[i];
-        if (seen.mask.cells[i] != 0) {
-            ++out.cells;
-            const float off = std::abs(cell.depth - real);
-            if (cell.depth != 0.0f && off < kExplained)
-                ++explained, sum += static_cast<double>(off);
-            else
-                ++lacking;
-        } else if (cell.depth != 0.0f && (real == 0.0f || real > cell.depth + kBehind)) {
-            // Beside an outline a cell may be either's.
-            const std::int32_t near = seen.mask.nearest[i];
-            const auto n = static_cast<int>(i);
-            if (near < 0 || std::abs(near % camera_.width - n % camera_.width) > 1 ||
-                std::abs(near / camera_.width - n / camera_.width) > 1)
-                ++lacking;
+    const PersonMask& mask = seen.mask;
+    for (int y = std::min(mask.low[1], drawing_.low[1]);
+         y <= std::max(mask.high[1], drawing_.high[1]); ++y)
+        for (int x = std::min(mask.low[0], drawing_.low[0]);
+             x <= std::max(mask.high[0], drawing_.high[0]); ++x) {
+            const auto i = static_cast<std::size_t>(y * camera_.width + x);
+            const DrawnCell& cell = drawing_.cells[i];
+            const float real = seen.grid.depth[i];
+            if (mask.cells[i] != 0) {
+                const float off = std::abs(cell.depth - real);
+                if (cell.depth != 0.0f && off < kExplained)
+                    ++explained, sum += static_cast<double>(off);
+                else
+                    ++lacking;
+            } else if (cell.depth != 0.0f && (real == 0.0f || real > cell.depth + kBehind)) {
+                // Beside an outline a cell may be either's.
+                const std::int32_t near = mask.nearest[i];
+                if (near < 0 || std::abs(near % camera_.width - x) > 1 ||
+                    std::abs(near / camera_.width - y) > 1)
+                    ++lacking;
+            }
         }
-    }
     if (explained > 0) out.error_m = static_cast<float>(sum / static_cast<double>(explained));
     out.unexplained = static_cast<float>(lacking) /
                       static_cast<float>(std::max<std::size_t>(1, explained + lacking));

@@ -22,7 +22,8 @@ struct RegistrationOptions {
     float extra_reach_m = 0.40f;
     float outline_weight = 0.25f; ///< places of the body where nobody is
     float outline_reach_m = 0.40f;
-    double pose_weight = 0.2; ///< of the ranges of joints
+    std::size_t most_cells = 1200; ///< readings that are used, evenly taken
+    double pose_weight = 0.2;      ///< of the ranges of joints
     double damping = 0.02;
 };
 
@@ -58,8 +59,8 @@ class Registration {
     double step(const SeenPerson& seen, const RegistrationOptions& options,
                 const MotionPrior* motion, body::Pose& pose) noexcept;
 
-    /// Poses and draws; then compares.
-    [[nodiscard]] Agreement judge(const SeenPerson& seen, const body::Pose& pose) noexcept;
+    /// Poses and draws, then compares. Not `whole`: without normals, for a quick look.
+    Agreement judge(const SeenPerson& seen, const body::Pose& pose, bool whole = true) noexcept;
 
     /// Of the last step (before it moved) or judgement.
     [[nodiscard]] const PosedBody& posed() const noexcept { return posed_; }

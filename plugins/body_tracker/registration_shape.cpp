@@ -7,6 +7,8 @@ namespace toile::body_tracker {
 
 using body::kJointCount;
 
+constexpr std::size_t kEvery = 3; // cells; no divisor of usual widths
+
 void Registration::linearise_shape(const SeenPerson& seen, const RegistrationOptions& options,
                                    int shapes, Eigen::MatrixXd& normal,
                                    Eigen::VectorXd& gradient) const noexcept {
@@ -26,9 +28,9 @@ void Registration::linearise_shape(const SeenPerson& seen, const RegistrationOpt
     const int size = shapes + body::kPoseUnknowns;
     Eigen::MatrixXf sums = Eigen::MatrixXf::Zero(size + 1, size + 1);
     Eigen::VectorXf row(size + 1);
-    const float information =
-        options.cell_information / (options.deviation_m * options.deviation_m);
-    for (std::size_t i = 0; i < drawing_.cells.size(); ++i) {
+    const float information = static_cast<float>(kEvery) * options.cell_information /
+                              (options.deviation_m * options.deviation_m);
+    for (std::size_t i = 0; i < drawing_.cells.size(); i += kEvery) {
         const DrawnCell& cell = drawing_.cells[i];
         if (cell.depth == 0.0f || seen.mask.cells[i] == 0) continue;
         const float off = cell.depth - seen.grid.depth[i];

@@ -46,6 +46,21 @@ void TrackedBody::set_shape(const body::ShapeVector& coefficients) {
     skeleton_ = model_.skeleton(shape_);
 }
 
+void TrackedBody::set_stature(float stature_m) {
+    std::size_t top = 0, sole = 0;
+    for (std::size_t v = 1; v < level_.mean.size(); ++v) {
+        if (level_.mean[v].y() > level_.mean[top].y()) top = v;
+        if (level_.mean[v].y() < level_.mean[sole].y()) sole = v;
+    }
+    const Eigen::VectorXd grows = (level_.components.row(static_cast<int>(3 * top + 1)) -
+                                   level_.components.row(static_cast<int>(3 * sole + 1)))
+                                      .cast<double>()
+                                      .transpose();
+    const double more =
+        static_cast<double>(stature_m - (level_.mean[top].y() - level_.mean[sole].y()));
+    set_shape(grows * (more / grows.squaredNorm()));
+}
+
 PosedBody TrackedBody::blank() const {
     PosedBody out;
     out.positions.resize(rest_.size());
@@ -55,6 +70,11 @@ PosedBody TrackedBody::blank() const {
 }
 
 void TrackedBody::pose(const body::Pose& pose, PosedBody& out) const noexcept {
+    place(pose, out);
+    geometry::vertex_normals(out.positions, level_.triangles, out.normals);
+}
+
+void TrackedBody::place(const body::Pose& pose, PosedBody& out) const noexcept {
     out.joints = body::forward_kinematics(skeleton_, pose);
     const auto motions =
         body::to_dual_quaternions(body::skinning_transforms(skeleton_, out.joints));
@@ -67,7 +87,6 @@ void TrackedBody::pose(const body::Pose& pose, PosedBody& out) const noexcept {
         out.positions[v] = skin * rest;
         out.rotations[v] = skin.rotation;
     }
-    geometry::vertex_normals(out.positions, level_.triangles, out.normals);
 }
 
 Drawing TrackedBody::blank_drawing(const GridCamera& camera) const {

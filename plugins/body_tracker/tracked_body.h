@@ -45,6 +45,8 @@ class TrackedBody {
     explicit TrackedBody(const body::FitModel& model);
 
     void set_shape(const body::ShapeVector& coefficients);
+    /// The likeliest body of a height (the smallest change of the mean one), metres.
+    void set_stature(float stature_m);
     [[nodiscard]] const body::ShapeVector& shape() const noexcept { return shape_; }
     [[nodiscard]] const body::Skeleton& skeleton() const noexcept { return skeleton_; }
     [[nodiscard]] const body::FitModel& model() const noexcept { return model_; }
@@ -66,6 +68,8 @@ class TrackedBody {
 
     [[nodiscard]] PosedBody blank() const;
     void pose(const body::Pose& pose, PosedBody& out) const noexcept;
+    /// Joints and positions only.
+    void place(const body::Pose& pose, PosedBody& out) const noexcept;
 
     [[nodiscard]] Drawing blank_drawing(const GridCamera& camera) const;
     /// Triangles that face the camera and lie farther than 0.2 m.

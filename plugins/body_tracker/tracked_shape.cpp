@@ -46,8 +46,7 @@ body::JointTransforms on_body(const body::Skeleton& other, const body::Skeleton&
                               const body::JointTransforms& world) noexcept {
     const body::Pose pose = body::pose_from_world(world);
     body::JointTransforms out = body::forward_kinematics(other, pose);
-    const float down =
-        body::lowest_sole(tracked, world) - body::lowest_sole(other, out);
+    const float down = body::lowest_sole(tracked, world) - body::lowest_sole(other, out);
     for (RigidTransform& joint : out)
         joint.translation.y() += down;
     return out;

@@ -7,6 +7,7 @@
 #include "body/rotations.h"
 #include "body/test_person.h"
 #include "body/track_file.h"
+#include "body/usual_poses.h"
 #include "body_tracker/body_tracking.h"
 #include "core/error.h"
 #include "core/random.h"
@@ -18,6 +19,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <unistd.h>
 
 namespace {
@@ -196,17 +198,37 @@ fs::path random_walk(const body::TestPerson& person, double seconds, std::uint64
     return file;
 }
 
+/// Arms hanging, for longer than anybody looks.
+fs::path stand_still(const body::TestPerson& person) {
+    const fs::path file =
+        fs::temp_directory_path() / ("toile_stand_" + std::to_string(getpid()) + ".jsonl");
+    body::Pose pose = body::usual_pose(person.skeleton, body::usual_arms().front(), 0.0f);
+    pose.hips_position.y() -=
+        body::lowest_sole(person.skeleton, body::forward_kinematics(person.skeleton, pose));
+    body::TrackedPerson one;
+    one.id = 1;
+    one.state = body::TrackState::tracked;
+    one.joints = body::forward_kinematics(person.skeleton, pose);
+    std::ofstream out(file);
+    for (const double time : {0.0, 60.0})
+        out << body::track_line(time > 0.0 ? 1 : 0, time, std::span(&one, 1));
+    return file;
+}
+
 struct Sums {
     double visible = 0, all = 0;
     std::size_t visible_count = 0, all_count = 0, near = 0;
     std::size_t frames = 0, called = 0, good_frames = 0, failed_frames = 0;
     std::array<double, kJointCount> joint{};
     std::array<std::size_t, kJointCount> joint_count{};
+    std::size_t swapped = 0, longest_swap = 0; ///< frames in which left and right are exchanged
     std::vector<double> ms;
     void add(const Sums& o) {
         visible += o.visible, all += o.all, visible_count += o.visible_count;
         all_count += o.all_count, near += o.near, frames += o.frames, called += o.called;
         good_frames += o.good_frames, failed_frames += o.failed_frames;
+        swapped += o.swapped;
+        longest_swap = std::max(longest_swap, o.longest_swap);
         for (std::size_t j = 0; j < kJointCount; ++j)
             joint[j] += o.joint[j], joint_count[j] += o.joint_count[j];
         ms.insert(ms.end(), o.ms.begin(), o.ms.end());
@@ -226,12 +248,12 @@ void print(const std::string& name, Sums& s) {
     };
     std::printf(
         "%-34s n %4zu vis %5.1f all %5.1f mm, tracked %5.1f %%, <10cm %5.1f %%, frames %5.1f %%, "
-        "failed %5.1f %%, ms %.1f p95 %.1f max %.1f\n",
+        "failed %5.1f %%, swap %zu, ms %.1f p95 %.1f max %.1f\n",
         name.c_str(), s.frames,
         s.visible / static_cast<double>(std::max<std::size_t>(1, s.visible_count)),
         s.all / static_cast<double>(std::max<std::size_t>(1, s.all_count)),
         share(s.called, s.frames), share(s.near, s.visible_count), share(s.good_frames, s.frames),
-        share(s.failed_frames, s.frames), at(0.5), at(0.95), at(1.0));
+        share(s.failed_frames, s.frames), s.longest_swap, at(0.5), at(0.95), at(1.0));
     std::fflush(stdout);
 }
 
@@ -274,6 +296,8 @@ void save_picture(const tracker::BodyTracking& tracking, const fs::path& file) {
 struct Case {
     std::string name;
     fs::path motion;
+    double turntable_s = 0.0; ///< seconds a turn on the spot
+    double turn = 0.0;        ///< radians, of the whole motion
 };
 
 class Evaluation {
@@ -298,7 +322,8 @@ class Evaluation {
             middle +=
                 body::sample(motion, f / kRate).hips_position / static_cast<float>(scenario.frames);
         who.position = Vec3f(-middle.x(), 0.0f, -middle.z());
-        who.turn = random.uniform(-0.5, 0.5);
+        who.turn = one.turn + random.uniform(-0.5, 0.5);
+        who.turntable_s = one.turntable_s;
         who.position = body::about(Vec3f::UnitY(), static_cast<float>(who.turn)) * who.position;
         scenario.people.push_back(who);
         sensor::CameraSettings camera = sensor::camera_of(sensor::CameraModel::kinect_v1);
@@ -316,6 +341,7 @@ class Evaluation {
                                        simulator.camera(0).reported_pose(), options);
         const Visibility visibility(person);
         Sums sums;
+        std::size_t swaps = 0;
         for (std::uint32_t f = 0; f < scenario.frames; ++f) {
             simulator.show(f);
             simulator.see(0);
@@ -324,6 +350,9 @@ class Evaluation {
                             static_cast<std::int64_t>(1e9 * scenario.time_of(f)));
             sums.ms.push_back(cpu_ms() - began);
             compare(simulator, tracking, visibility, sums);
+            swaps = swapped(simulator, tracking) ? swaps + 1 : 0;
+            sums.swapped += swaps > 0 ? 1 : 0;
+            sums.longest_swap = std::max(sums.longest_swap, swaps);
             if (!settings_.pictures.empty() &&
                 f % static_cast<std::uint32_t>(settings_.picture_every) == 0)
                 save_picture(tracking,
@@ -334,6 +363,24 @@ class Evaluation {
     }
 
   private:
+    /// Are hips and shoulders nearer to the truth with left and right exchanged?
+    static bool swapped(const sensor::Simulator& simulator, const tracker::BodyTracking& tracking) {
+        const auto& person = *tracking.people()[0];
+        if (!person.active()) return false;
+        const auto& truth = *simulator.figures()[0]->joints();
+        const Eigen::Isometry3f place = simulator.camera(0).reported_pose().cast<float>();
+        float as_is = 0.0f, exchanged = 0.0f;
+        for (const Joint joint : {Joint::left_upper_arm, Joint::right_upper_arm,
+                                  Joint::left_upper_leg, Joint::right_upper_leg}) {
+            const Vec3f at = place * person.joints()[static_cast<std::size_t>(joint)].translation;
+            as_is += (at - truth[static_cast<std::size_t>(joint)].translation).norm();
+            exchanged +=
+                (at - truth[static_cast<std::size_t>(body::opposite_joint(joint))].translation)
+                    .norm();
+        }
+        return exchanged < as_is;
+    }
+
     static void compare(const sensor::Simulator& simulator, const tracker::BodyTracking& tracking,
                         const Visibility& visibility, Sums& sums) {
         const auto& figure = *simulator.figures()[0];
@@ -393,6 +440,9 @@ void run(const Settings& settings) {
             cases.push_back({file.stem().string(), file});
         const fs::path walk = random_walk(person, settings.seconds, settings.seed + n);
         cases.push_back({"random", walk});
+        const fs::path standing = stand_still(person);
+        cases.push_back({"turn", standing, 6.0});
+        if (!motions.empty()) cases.push_back({"away", motions.front(), 0.0, std::numbers::pi});
         for (const Case& one : cases) {
             if (!settings.only.empty() && one.name != settings.only) continue;
             Sums sums = evaluation.run(people[n], person, one, settings.seed + n);
@@ -400,6 +450,7 @@ void run(const Settings& settings) {
             all.add(sums);
         }
         fs::remove(walk);
+        fs::remove(standing);
     }
     print("all", all);
     for (std::size_t j = 0; j < kJointCount; ++j)
