@@ -58,33 +58,17 @@ void Registration::draw_pose(const body::Pose& pose) noexcept {
     body_.draw(posed_, camera_, drawing_);
 }
 
-void Registration::add_row(const TriangleJoints& joints, const std::array<float, 3>& weights,
-                           const Triangle& triangle, const Vec3f& at, const Vec3f& along,
-                           float residual, float weight) noexcept {
-    // Blocks of three: the hips' place, then each joint's turn.
-    std::array<Vec3f, kJointCount + 1> block;
-    std::array<int, kJointCount + 1> start;
-    block[0] = along;
-    start[0] = 0;
-    int count = 1;
-    const auto& below = body_.level().below;
-    for (std::uint8_t k = 0; k < joints.count; ++k) {
-        const std::size_t j = joints.joints[k];
-        const float share = weights[0] * below[triangle[0]][j] +
-                            weights[1] * below[triangle[1]][j] + weights[2] * below[triangle[2]][j];
-        if (share < 1e-3f) continue;
-        Vec3f turn = share * (at - posed_.joints[j].translation).cross(along);
-        if (const auto parent = body::joint_parent(static_cast<body::Joint>(j)))
-            turn = posed_.joints[static_cast<std::size_t>(*parent)].rotation.conjugate() * turn;
-        block[static_cast<std::size_t>(count)] = turn;
-        start[static_cast<std::size_t>(count++)] = 3 + 3 * static_cast<int>(j);
-    }
-    for (int a = 0; a < count; ++a) {
-        const Vec3f scaled = weight * block[static_cast<std::size_t>(a)];
-        const int row = start[static_cast<std::size_t>(a)];
-        for (int b = 0; b <= a; ++b) {
-            const Vec3f& other = block[static_cast<std::size_t>(b)];
-            float* to = sums_.data() + row * kStride + start[static_cast<std::size_t>(b)];
+void Registration::add_row(std::int32_t triangle, const std::array<float, 3>& weights,
+                           const Vec3f& at, const Vec3f& along, float residual,
+                           float weight) noexcept {
+    PlaceMotion motion;
+    body_.motion(posed_, triangle, weights, at, along, motion);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(motion.count); ++a) {
+        const Vec3f scaled = weight * motion.block[a];
+        const int row = motion.start[a];
+        for (std::size_t b = 0; b <= a; ++b) {
+            const Vec3f& other = motion.block[b];
+            float* to = sums_.data() + row * kStride + motion.start[b];
             for (int i = 0; i < 3; ++i)
                 for (int k = 0; k < 3; ++k)
                     to[i * kStride + k] += scaled[i] * other[k];
@@ -92,6 +76,14 @@ void Registration::add_row(const TriangleJoints& joints, const std::array<float,
         for (int i = 0; i < 3; ++i)
             sum_[static_cast<std::size_t>(row + i)] += scaled[i] * residual;
     }
+}
+
+/// A whole vertex.
+void Registration::add_vertex(std::uint32_t vertex, const Vec3f& along, float residual,
+                              float weight) noexcept {
+    const std::int32_t corner = body_.corner_of(vertex);
+    add_row(corner / 3, TrackedBody::weights_of(corner), posed_.positions[vertex], along, residual,
+            weight);
 }
 
 void Registration::add_readings(const SeenPerson& seen,
@@ -115,9 +107,7 @@ void Registration::add_readings(const SeenPerson& seen,
             const float facing = -place.normal.dot(ray) / ray.norm();
             if (facing < kLeastCosine) continue;
             const float residual = place.normal.dot(off * ray);
-            add_row(body_.joints_of(cell.triangle), place.weights,
-                    body_.level().triangles[static_cast<std::size_t>(cell.triangle)],
-                    place.position, place.normal, residual,
+            add_row(cell.triangle, place.weights, place.position, place.normal, residual,
                     information * geman_mcclure(residual, options.robust_m));
         }
 }
@@ -180,10 +170,7 @@ void Registration::add_extra(const SeenPerson& seen, const RegistrationOptions& 
             const float weight =
                 information * geman_mcclure(distance, 0.5f * options.extra_reach_m);
             // Along the way with all weight, across it with none: the nearest place may slide.
-            const std::int32_t corner = body_.corner_of(v);
-            add_row(body_.joints_of(corner / 3), body_.weights_of(corner),
-                    body_.level().triangles[static_cast<std::size_t>(corner / 3)],
-                    posed_.positions[v], way, distance - slack, weight);
+            add_vertex(v, way, distance - slack, weight);
         }
 }
 
@@ -212,11 +199,8 @@ void Registration::add_outline(const SeenPerson& seen,
         // A vertex stands for the cells that its surface fills.
         const float cells =
             body_.level().areas[v] / (camera_.footprint(depth) * camera_.footprint(depth));
-        const std::int32_t at = body_.corner_of(v);
-        add_row(body_.joints_of(at / 3), body_.weights_of(at),
-                body_.level().triangles[static_cast<std::size_t>(at / 3)], posed_.positions[v],
-                off / distance, reach - slack,
-                information * cells * geman_mcclure(reach, 0.5f * options.outline_reach_m));
+        add_vertex(v, off / distance, reach - slack,
+                   information * cells * geman_mcclure(reach, 0.5f * options.outline_reach_m));
     }
 }
 
@@ -226,10 +210,7 @@ void Registration::add_floor(const SeenPerson& seen) noexcept {
     for (std::uint32_t v = 0; v < posed_.positions.size(); ++v) {
         const float height = seen.floor->normal.dot(posed_.positions[v]) - seen.floor->offset;
         if (height >= 0.0f) continue;
-        const std::int32_t at = body_.corner_of(v);
-        add_row(body_.joints_of(at / 3), body_.weights_of(at),
-                body_.level().triangles[static_cast<std::size_t>(at / 3)], posed_.positions[v],
-                seen.floor->normal, std::max(height, -0.1f), information);
+        add_vertex(v, seen.floor->normal, std::max(height, -0.1f), information);
     }
 }
 

@@ -87,9 +87,10 @@ class Registration {
     void add_extra(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_outline(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_floor(const SeenPerson& seen) noexcept;
-    void add_row(const TriangleJoints& joints, const std::array<float, 3>& weights,
-                 const Triangle& triangle, const Vec3f& at, const Vec3f& along, float residual,
-                 float weight) noexcept;
+    void add_row(std::int32_t triangle, const std::array<float, 3>& weights, const Vec3f& at,
+                 const Vec3f& along, float residual, float weight) noexcept;
+    void add_vertex(std::uint32_t vertex, const Vec3f& along, float residual,
+                    float weight) noexcept;
     void add_motion(const MotionPrior& motion, const body::Pose& pose) noexcept;
     void find_visible(const SeenPerson& seen) noexcept;
 

@@ -60,19 +60,10 @@ void Registration::linearise_shape(const SeenPerson& seen, const RegistrationOpt
                                             .transpose();
             }
         }
-        row.segment<3>(shapes) = place.normal;
-        const TriangleJoints& moved = body_.joints_of(cell.triangle);
-        for (std::uint8_t k = 0; k < moved.count; ++k) {
-            const std::size_t j = moved.joints[k];
-            const float share = place.weights[0] * level.below[t[0]][j] +
-                                place.weights[1] * level.below[t[1]][j] +
-                                place.weights[2] * level.below[t[2]][j];
-            Vec3f turn =
-                share * (place.position - posed_.joints[j].translation).cross(place.normal);
-            if (const auto parent = body::joint_parent(static_cast<body::Joint>(j)))
-                turn = posed_.joints[static_cast<std::size_t>(*parent)].rotation.conjugate() * turn;
-            row.segment<3>(shapes + 3 + 3 * static_cast<int>(j)) = turn;
-        }
+        PlaceMotion motion;
+        body_.motion(posed_, cell.triangle, place.weights, place.position, place.normal, motion);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(motion.count); ++k)
+            row.segment<3>(shapes + motion.start[k]) = motion.block[k];
         const float residual = place.normal.dot(off * ray);
         row[size] = residual;
         const float s = options.robust_m * options.robust_m;
