@@ -17,6 +17,7 @@ constexpr int kSearchAfter = 2;            // failures in a row
 constexpr float kNobody = 0.45f;           // not explained: what was found is no person
 constexpr float kSurelyNobody = 0.6f;
 constexpr float kAstraySeconds = 1.0f; // nobody is followed where nobody is
+constexpr float kLearnBelow = 0.3f;    // not explained: a wrong shape alone may do that
 constexpr int kFirstSteps = 2;
 constexpr int kTryTurnedEvery = 30; // frames
 constexpr int kTurnedSteps = 6;
@@ -242,7 +243,7 @@ void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
     following_ = failed() ? Following::uncertain
                  : !sure_ ? Following::detected
                           : Following::tracked;
-    if (options_.learn_shape && sure_ && !learner_.done() && !failed()) {
+    if (options_.learn_shape && sure_ && !learner_.done() && agreement_.unexplained < kLearnBelow) {
         learner_.add(registration_, seen, options_.registration, body_.shape());
         if (learner_.due()) {
             body::ShapeVector shape = body_.shape();

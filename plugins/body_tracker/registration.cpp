@@ -11,12 +11,13 @@ namespace {
 
 using body::kJointCount;
 
-constexpr float kLeastCosine = 0.2f; // between surface and line of sight
-constexpr float kBehind = 0.10f;     // metres: what lies so far behind the body is not it
-constexpr float kExplained = 0.06f;  // metres (P5 3.6)
-constexpr float kSlackCells = 1.2f;  // an outline is not known better
-constexpr double kMostTurn = 0.4;    // radians a step
-constexpr double kMostShift = 0.25;  // metres a step
+constexpr float kLeastCosine = 0.2f;     // between surface and line of sight
+constexpr float kBehind = 0.10f;         // metres: what lies so far behind the body is not it
+constexpr float kExplained = 0.06f;      // metres (P5 3.6)
+constexpr float kSlackCells = 1.2f;      // an outline is not known better
+constexpr float kShapeSlackCells = 0.6f; // but over many frames
+constexpr double kMostTurn = 0.4;        // radians a step
+constexpr double kMostShift = 0.25;      // metres a step
 constexpr float kFloorDeviation = 0.01f;
 constexpr std::size_t kExtraEvery = 2; // every n-th cell is enough
 
@@ -61,6 +62,10 @@ void Registration::draw_pose(const body::Pose& pose) noexcept {
 void Registration::add_row(std::int32_t triangle, const std::array<float, 3>& weights,
                            const Vec3f& at, const Vec3f& along, float residual,
                            float weight) noexcept {
+    if (recording_) {
+        rows_.push_back({triangle, weights, at, along, residual, weight});
+        return;
+    }
     PlaceMotion motion;
     body_.motion(posed_, triangle, weights, at, along, motion);
     for (std::size_t a = 0; a < static_cast<std::size_t>(motion.count); ++a) {
@@ -162,7 +167,8 @@ void Registration::add_extra(const SeenPerson& seen, const RegistrationOptions& 
                 if (squared < best) best = squared, at = k;
             }
             const float distance = std::sqrt(best);
-            const float slack = kSlackCells * camera_.footprint(depth);
+            const float slack =
+                (recording_ ? kShapeSlackCells : kSlackCells) * camera_.footprint(depth);
             if (distance < slack || distance > options.extra_reach_m) continue;
             const std::uint32_t v = visible_[at];
             const Vec3f off = posed_.positions[v] - p;
@@ -193,7 +199,8 @@ void Registration::add_outline(const SeenPerson& seen,
         const Vec3f off =
             camera_.point(corner.x(), corner.y(), depth) - camera_.point(nx, ny, depth);
         const float distance = off.norm();
-        const float slack = kSlackCells * camera_.footprint(depth);
+        const float slack =
+            (recording_ ? kShapeSlackCells : kSlackCells) * camera_.footprint(depth);
         if (distance < slack) continue;
         const float reach = std::min(distance, options.outline_reach_m);
         // A vertex stands for the cells that its surface fills.
@@ -261,6 +268,17 @@ double Registration::step(const SeenPerson& seen, const RegistrationOptions& opt
     return turn * scale;
 }
 
+/// Is the body drawn in a neighbouring cell, about as deep? An outline may be a cell off.
+bool Registration::beside_body(int x, int y, float depth) const noexcept {
+    for (int n = 0; n < 9; ++n) {
+        const int nx = x + n % 3 - 1, ny = y + n / 3 - 1;
+        if (nx < 0 || ny < 0 || nx >= camera_.width || ny >= camera_.height) continue;
+        const float drawn = drawing_.cells[static_cast<std::size_t>(ny * camera_.width + nx)].depth;
+        if (drawn != 0.0f && std::abs(drawn - depth) < kExplained) return true;
+    }
+    return false;
+}
+
 Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bool whole) noexcept {
     if (whole)
         body_.pose(pose, posed_);
@@ -283,7 +301,7 @@ Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bo
                 const float off = std::abs(cell.depth - real);
                 if (cell.depth != 0.0f && off < kExplained)
                     ++explained, sum += static_cast<double>(off);
-                else
+                else if (!beside_body(x, y, real))
                     ++lacking;
             } else if (cell.depth != 0.0f && (real == 0.0f || real > cell.depth + kBehind)) {
                 // Beside an outline a cell may be either's.
