@@ -106,7 +106,9 @@ TEST(BodyTracking, GoesOnAfterBadFrames) {
         tracking.update(bad ? kinds[static_cast<std::size_t>(f) % 4] : room.depth.data(), time);
         for (const RigidTransform& joint : tracking.people()[0]->joints())
             ASSERT_TRUE(joint.translation.allFinite()) << "frame " << f;
-        if (bad) EXPECT_NE(tracking.people()[0]->following(), Following::tracked) << f;
+        if (bad) {
+            EXPECT_NE(tracking.people()[0]->following(), Following::tracked) << f;
+        }
     }
     ASSERT_TRUE(tracking.people()[0]->active());
     EXPECT_EQ(tracking.people()[0]->id(), 1u);
@@ -121,7 +123,9 @@ TEST(BodyTracking, FindsSomebodyAgainWhoLeft) {
         const bool away = f >= 30 && f < 75;
         if (!away) room.add(waving(f), f < 30 ? -0.3f : 0.5f, 0.0f, 0.0f);
         tracking.update(room.depth.data(), frame_time(f));
-        if (f == 74) EXPECT_NE(tracking.people()[0]->following(), Following::tracked);
+        if (f == 74) {
+            EXPECT_NE(tracking.people()[0]->following(), Following::tracked);
+        }
         if (f < 85) continue;
         ASSERT_TRUE(tracking.people()[0]->active());
         EXPECT_LT(mean_error(*tracking.people()[0], room.people[0]), 0.05f) << "frame " << f;
@@ -149,7 +153,9 @@ TEST(BodyTracking, TwoPeopleWhoCrossKeepTheirNumbers) {
                     nearest = person.get();
             ASSERT_NE(nearest, nullptr);
             if (f == 6) first[p] = nearest->id();
-            if (f == 89) EXPECT_EQ(nearest->id(), first[p]);
+            if (f == 89) {
+                EXPECT_EQ(nearest->id(), first[p]);
+            }
         }
     }
     EXPECT_NE(first[0], first[1]);

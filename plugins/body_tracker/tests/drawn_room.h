@@ -37,7 +37,6 @@ struct DrawnRoom {
     /// Stands at x, z (world) with the lowest sole on the floor.
     void add(body::Pose pose, float x, float z, float yaw,
              const body::ShapeVector& shape = body::ShapeVector::Zero(adult().component_count())) {
-        const body::Skeleton skeleton = adult().skeleton(shape);
         pose.rotations[0] = body::about(Vec3f::UnitY(), yaw) * pose.rotations[0];
         pose.hips_position = Vec3f(x, 0.0f, z);
         body::PosedLevel posed;
