@@ -7,6 +7,8 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <set>
 
 namespace toile::openni2_sensor {
 namespace {
@@ -25,6 +27,31 @@ void check_recording(const fs::path& file) {
     if (std::string(magic.data(), magic.size()) != "NI10")
         throw FileError(file.string(), "is no OpenNI recording (does not begin with NI10)");
 }
+
+/// Paths that recordings are open by, in the whole process.
+class Leases {
+  public:
+    static Leases& instance() {
+        static auto* const leases = new Leases; // addresses may outlive everything static
+        return *leases;
+    }
+    /// The file by a path that nobody has: dots are put in as long as somebody does.
+    Address take(const fs::path& file) {
+        const std::scoped_lock lock(mutex_);
+        fs::path path = file;
+        while (!taken_.insert(path.string()).second)
+            path = path.parent_path() / "." / path.filename();
+        const std::string name = path.string();
+        return {name, true, std::shared_ptr<const void>(this, [this, name](const void*) {
+                    const std::scoped_lock release(mutex_);
+                    taken_.erase(name);
+                })};
+    }
+
+  private:
+    std::mutex mutex_;
+    std::set<std::string> taken_;
+};
 
 std::string what_there_is(const std::vector<DeviceName>& devices) {
     if (devices.empty())
@@ -67,20 +94,20 @@ Address resolve(const std::string& source, const OpenNiLibrary& library) {
     const bool names_file = fs::path(source).extension() == ".oni" || fs::is_regular_file(source);
     if (names_file) {
         check_recording(source);
-        return {source, true};
+        return Leases::instance().take(source);
     }
     const auto devices = list_devices(library);
     const std::size_t index = source.empty()      ? 0
                               : is_number(source) ? std::stoul(source)
                                                   : devices.size();
     if (source.empty() || is_number(source)) {
-        if (index < devices.size()) return {devices[index].uri, false};
+        if (index < devices.size()) return {devices[index].uri, false, nullptr};
         throw Error("openni2:" + source + ": no such camera; " + what_there_is(devices));
     }
     const bool known = std::any_of(devices.begin(), devices.end(),
                                    [&](const DeviceName& d) { return d.uri == source; });
     if (!known) throw Error("openni2:" + source + ": no such camera; " + what_there_is(devices));
-    return {source, false};
+    return {source, false, nullptr};
 }
 
 } // namespace toile::openni2_sensor

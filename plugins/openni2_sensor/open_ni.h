@@ -1,6 +1,7 @@
 // OpenNI2 as a whole: started, and asked which cameras there are.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct DeviceName {
 struct Address {
     std::string uri; ///< as OpenNI2 wants it
     bool recording = false;
+    /// A recording's: no other address has this URI while a copy of this one lives. Two players of
+    /// one URI would share one device, and each would get some of its frames.
+    std::shared_ptr<const void> lease;
 };
 /// \throw Error: no such device (names those that there are, or what may be missing), no such file,
 /// or a file that is no recording
