@@ -1,5 +1,6 @@
 #include "evaluation/fit_errors.h"
 
+#include "body/test_person_maker.h"
 #include "core/error.h"
 #include "geometry/nearest_surface.h"
 
@@ -69,25 +70,14 @@ struct Places {
     std::array<Vec3f, 2> acromion{}; // left, right
 };
 
-/// Heights in the cut through the middle of the body: of its lowest point between the legs.
-double crotch_height(const PosedSurface& surface, const geometry::Plane& middle) {
-    const float knees = 0.5f * (place(surface, Joint::left_lower_leg).y() +
-                                place(surface, Joint::right_lower_leg).y());
-    float lowest = std::numeric_limits<float>::infinity();
-    for (const auto& loop : geometry::slice(surface.positions, surface.triangles, middle))
-        for (const Vec3f& p : loop.points)
-            if (p.y() > knees) lowest = std::min(lowest, p.y());
-    return static_cast<double>(lowest);
-}
-
-Places places_of(const PosedSurface& surface, const geometry::Plane& middle) {
+Places places_of(const PosedSurface& surface) {
     Places out;
     const auto [low, high] =
         std::minmax_element(surface.positions.begin(), surface.positions.end(),
                             [](const Vec3f& a, const Vec3f& b) { return a.y() < b.y(); });
     out.soles = static_cast<double>(low->y());
     out.top = static_cast<double>(high->y());
-    out.crotch = crotch_height(surface, middle);
+    out.crotch = static_cast<double>(surface.positions[surface.crotch].y());
     return out;
 }
 
@@ -187,6 +177,17 @@ bool in_core(const body::TestPerson& person, std::size_t vertex) {
     return true;
 }
 
+std::uint32_t crotch_of(const body::BodyModel& model) {
+    body::TestPerson mean;
+    mean.id = model.id;
+    mean.rest.positions = model.rest.positions;
+    mean.rest.triangles = model.rest.triangles;
+    mean.parts = model.parts;
+    mean.skeleton = model.skeleton;
+    body::find_test_person_truth(mean);
+    return mean.landmarks.at("crotch");
+}
+
 std::vector<std::uint8_t> seen_vertices(const simulated_sensor::Simulator& simulator,
                                         const PosedSurface& truth) {
     std::vector<Vec3f> normals(truth.positions.size());
@@ -220,10 +221,8 @@ std::map<std::string, double> girth_errors(const body::TestPerson& person,
 std::map<std::string, double> length_errors(const body::TestPerson& person,
                                             const PosedSurface& truth, const PosedSurface& result) {
     const geometry::NearestSurface surface(result.positions, result.triangles);
-    const auto middle = geometry::Plane::through(
-        place(truth, Joint::hips), truth.joints[index(Joint::hips)].rotation * Vec3f::UnitX());
-    Places true_places = places_of(truth, middle);
-    Places places = places_of(result, middle);
+    Places true_places = places_of(truth);
+    Places places = places_of(result);
     const auto carry = [&](const std::string& landmark, Joint joint, Vec3f& on_truth,
                            Vec3f& on_result) {
         const auto found = person.landmarks.find(landmark);
