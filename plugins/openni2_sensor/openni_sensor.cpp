@@ -23,9 +23,8 @@ std::int64_t nanoseconds(std::chrono::steady_clock::duration time) {
 
 OpenNiSensor::OpenNiSensor(const std::string& source, const DeviceOptions& options, Log log)
     : library_(OpenNiLibrary::running()), options_(options), log_(std::move(log)),
-      address_(resolve(source, library_)),
-      device_(std::make_unique<CameraDevice>(library_, address_, options)),
-      clock_(device_->period_s()) {
+      address_(library_.post([&] { return resolve(source, library_); }).get()),
+      device_(open_device()), clock_(device_->period_s()) {
     intrinsics_ = device_->intrinsics();
     has_color_ = device_->has_color();
     registered_ = device_->registered();
@@ -36,15 +35,27 @@ OpenNiSensor::OpenNiSensor(const std::string& source, const DeviceOptions& optio
 }
 
 OpenNiSensor::~OpenNiSensor() {
-    if (returning_.valid()) returning_.wait();
+    if (returning_.valid()) device_ = returning_.get();
+    close_device().wait();
+}
+
+std::unique_ptr<CameraDevice> OpenNiSensor::open_device() const {
+    return library_
+        .post([this] { return std::make_unique<CameraDevice>(library_, address_, options_); })
+        .get();
+}
+
+std::future<void> OpenNiSensor::close_device() {
+    return library_.post(
+        [device = std::shared_ptr<CameraDevice>(std::move(device_))]() mutable { device.reset(); });
 }
 
 void OpenNiSensor::rewind() {
     if (!address_.recording || (!begun_ && !options_.live)) return;
     over_ = begun_ = false;
     // OpenNI2's own seeking crashes on some recordings: opened anew instead.
-    device_.reset();
-    device_ = std::make_unique<CameraDevice>(library_, address_, options_);
+    close_device().wait();
+    device_ = open_device();
     clock_ = FrameClock(period_s_);
     wrong_in_a_row_ = 0;
 }
@@ -60,7 +71,7 @@ void OpenNiSensor::look_for_device() {
             device_->has_color() != has_color_) {
             log_("openni2:" + address_.uri +
                  " came back with other pictures; start anew to use it");
-            device_.reset();
+            close_device();
             looked_ = Clock::now() + std::chrono::hours(1);
             return;
         }
@@ -70,7 +81,7 @@ void OpenNiSensor::look_for_device() {
     }
     if (Clock::now() - looked_ < kLookAgain) return;
     looked_ = Clock::now();
-    returning_ = std::async(std::launch::async, [this]() -> std::unique_ptr<CameraDevice> {
+    returning_ = library_.post([this]() -> std::unique_ptr<CameraDevice> {
         const auto devices = list_devices(library_);
         const bool there = std::any_of(devices.begin(), devices.end(), [&](const DeviceName& one) {
             return one.uri == address_.uri;
@@ -120,7 +131,7 @@ void OpenNiSensor::note_wrong_size() {
                              text_of({intrinsics_.width, intrinsics_.height});
     if (faults_.wrong_size == 1) log_(what + "; it is left out (later ones are not told)");
     if (++wrong_in_a_row_ < kMostWrong) return;
-    device_.reset();
+    close_device();
     over_ = true;
     throw Error(what + ", and so were the " + std::to_string(kMostWrong - 1) +
                 " before; set it to one size and open it anew");
@@ -144,7 +155,7 @@ bool OpenNiSensor::poll() {
         return false;
     case CameraDevice::Step::lost:
         log_("openni2:" + address_.uri + " was unplugged; it goes on when it is back");
-        device_.reset();
+        close_device();
         looked_ = Clock::now();
         return false;
     default:

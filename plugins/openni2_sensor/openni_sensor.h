@@ -49,6 +49,9 @@ class OpenNiSensor {
 
   private:
     using Clock = std::chrono::steady_clock;
+    [[nodiscard]] std::unique_ptr<CameraDevice> open_device() const;
+    /// Closed after what was posted before; nobody need wait.
+    std::future<void> close_device();
     void look_for_device();
     bool accept();
     void note_wrong_size();
