@@ -1,10 +1,13 @@
 // The real OpenNI2 library, with cameras of a driver that tests know (tests/driver), and
 // recordings.
+#include "core/bytes.h"
 #include "imaging/oni_writer.h"
 #include "openni2_sensor/tests/test_camera.h"
+#include "support/ball_pictures.h"
 #include "support/temporary_folder.h"
 #include "support/throws.h"
 
+#include <cstdlib>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -190,6 +193,28 @@ TEST(OniRecording, TwoPlayersOfOneFileDoNotShareItsFrames) {
             ASSERT_TRUE(sensor->poll()) << i;
             EXPECT_EQ(shown_number(sensor->frame()), i);
         }
+}
+
+constexpr int kSampleFrames = 4;
+
+void write_sample(const std::filesystem::path& file) {
+    const auto camera = toile::test::ball_camera(32, 24);
+    imaging::OniWriter writer(file, camera, true, 30.0);
+    for (int k = 0; k < kSampleFrames; ++k) {
+        const auto picture = toile::test::ball_color_picture(camera, k);
+        writer.add(k / 30.0, toile::test::ball_depth_picture(camera, k), &picture);
+    }
+    writer.finish();
+}
+
+TEST(OniRecording, ThePluginsSampleIsWhatTheWriterWrites) {
+    const toile::test::TemporaryFolder folder;
+    write_sample(folder / "sample.oni");
+    if (std::getenv("TOILE_WRITE_SAMPLES") != nullptr)
+        std::filesystem::copy_file(folder / "sample.oni", TOILE_SAMPLE,
+                                   std::filesystem::copy_options::overwrite_existing);
+    EXPECT_EQ(read_bytes(TOILE_SAMPLE, 1u << 20), read_bytes(folder / "sample.oni", 1u << 20))
+        << "run this test with TOILE_WRITE_SAMPLES=1 to write the sample anew";
 }
 
 TEST(OniRecording, KeepsToItsOwnPaceWhereWished) {
