@@ -79,22 +79,7 @@ struct Seen {
     std::vector<Vec3f> truth;       // (nv) of the first instant
     body::JointTransforms joints;   // of the first instant
     std::vector<std::uint8_t> seen; // (nv) by some camera then; empty: a scan
-    std::uint32_t crotch = 0;       // vertex of the truth
 };
-
-/// The vertex between the legs, found on the slimmest of the people: they are of one topology, and
-/// where thighs touch, the lowest point between them is none of the trunk.
-std::uint32_t shared_crotch(const std::vector<fs::path>& people) {
-    std::uint32_t out = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (const fs::path& folder : people) {
-        const body::TestPerson person = body::load_test_person(folder);
-        if (person.bmi >= least) continue;
-        least = person.bmi;
-        out = person.landmarks.at("crotch");
-    }
-    return out;
-}
 
 fit::Observation scan_of(const body::TestPerson& person, std::span<const Vec3f> positions,
                          std::size_t instant) {
@@ -108,10 +93,9 @@ fit::Observation scan_of(const body::TestPerson& person, std::span<const Vec3f> 
 }
 
 Seen look_at(const Settings& settings, const body::TestPerson& person, const fs::path& folder,
-             std::uint32_t crotch, std::uint64_t seed) {
+             std::uint64_t seed) {
     sensor::Simulator simulator(scenario_of(settings, folder, seed), &rows_on_all_cores);
     Seen out;
-    out.crotch = crotch;
     const std::size_t instants = std::max<std::size_t>(1, settings.poses.size());
     for (std::size_t f = 0; f < instants; ++f) {
         simulator.show(static_cast<std::uint32_t>(f));
@@ -126,8 +110,8 @@ Seen look_at(const Settings& settings, const body::TestPerson& person, const fs:
             continue;
         }
         if (f == 0)
-            out.seen = seen_vertices(
-                simulator, {out.truth, person.rest.triangles, person.parts, out.joints, crotch});
+            out.seen = seen_vertices(simulator,
+                                     {out.truth, person.rest.triangles, person.parts, out.joints});
         auto seen = observe(simulator, f);
         out.floor = seen.floor;
         for (auto& one : seen.observations)
@@ -189,10 +173,9 @@ Notes compare(const body::TestPerson& person, const Seen& seen, const fit::FitMo
     const fit::FitLevel& full = model.level(0);
     fit::PosedLevel posed;
     fit::pose_level(model, full, found.state.shape, found.state.poses[0], posed);
-    const PosedSurface truth{seen.truth, person.rest.triangles, person.parts, seen.joints,
-                             seen.crotch};
+    const PosedSurface truth{seen.truth, person.rest.triangles, person.parts, seen.joints};
     const PosedSurface result{posed.positions, full.triangles, model.space().model().parts,
-                              posed.world, crotch_of(model.space().model())};
+                              posed.world};
     Notes notes;
     note_surfaces(person, truth, seen.seen, result, full, notes);
     for (const auto& [name, error] : girth_errors(person, truth, result))
@@ -240,12 +223,11 @@ void run(const Settings& settings) {
     for (const auto& entry : fs::directory_iterator(settings.people))
         if (fs::exists(entry.path() / "person.json")) people.push_back(entry.path());
     std::sort(people.begin(), people.end());
-    const std::uint32_t crotch = shared_crotch(people);
     Errors errors;
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (std::size_t n = settings.first; n < people.size() && rows.size() < settings.count; ++n) {
         const body::TestPerson person = body::load_test_person(people[n]);
-        const Seen seen = look_at(settings, person, people[n], crotch, kFirstSeed + n);
+        const Seen seen = look_at(settings, person, people[n], kFirstSeed + n);
         const double began = seconds();
         const fit::FitResult found =
             fitter.fit(seen.observations, options_of(settings, seen), &rows_on_all_cores);

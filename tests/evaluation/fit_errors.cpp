@@ -1,6 +1,5 @@
 #include "evaluation/fit_errors.h"
 
-#include "body/test_person_maker.h"
 #include "core/error.h"
 #include "geometry/nearest_surface.h"
 
@@ -13,6 +12,8 @@ namespace {
 using body::Joint;
 
 constexpr int kAlignRounds = 6;
+constexpr double kLeastLegGirth = 0.2;     // metres
+constexpr double kCrotchAccuracy = 0.0002; // metres
 constexpr double kMillimetres = 1000.0;
 constexpr float kLeastFacing = 0.17365f; // cosine of 80 degrees
 
@@ -70,6 +71,28 @@ struct Places {
     std::array<Vec3f, 2> acromion{}; // left, right
 };
 
+/// Where the legs' level cuts become one; bisected between knees and hips.
+double crotch_of(const PosedSurface& surface) {
+    const auto triangles = without_arms(surface);
+    const auto apart = [&](double height) {
+        const geometry::Plane level{Vec3f::UnitY(), static_cast<float>(height)};
+        const auto loops = geometry::slice(surface.positions, triangles, level);
+        return std::count_if(loops.begin(), loops.end(), [](const geometry::Loop& loop) {
+                   return loop.closed && loop.length() > kLeastLegGirth;
+               }) > 1;
+    };
+    const auto height = [&](Joint left, Joint right) {
+        return 0.5 * static_cast<double>(place(surface, left).y() + place(surface, right).y());
+    };
+    double below = height(Joint::left_lower_leg, Joint::right_lower_leg);
+    double above = height(Joint::left_upper_leg, Joint::right_upper_leg);
+    while (above - below > kCrotchAccuracy) {
+        const double middle = 0.5 * (below + above);
+        (apart(middle) ? below : above) = middle;
+    }
+    return 0.5 * (below + above);
+}
+
 Places places_of(const PosedSurface& surface) {
     Places out;
     const auto [low, high] =
@@ -77,7 +100,7 @@ Places places_of(const PosedSurface& surface) {
                             [](const Vec3f& a, const Vec3f& b) { return a.y() < b.y(); });
     out.soles = static_cast<double>(low->y());
     out.top = static_cast<double>(high->y());
-    out.crotch = static_cast<double>(surface.positions[surface.crotch].y());
+    out.crotch = crotch_of(surface);
     return out;
 }
 
@@ -175,17 +198,6 @@ bool in_core(const body::TestPerson& person, std::size_t vertex) {
             return false;
     }
     return true;
-}
-
-std::uint32_t crotch_of(const body::BodyModel& model) {
-    body::TestPerson mean;
-    mean.id = model.id;
-    mean.rest.positions = model.rest.positions;
-    mean.rest.triangles = model.rest.triangles;
-    mean.parts = model.parts;
-    mean.skeleton = model.skeleton;
-    body::find_test_person_truth(mean);
-    return mean.landmarks.at("crotch");
 }
 
 std::vector<std::uint8_t> seen_vertices(const simulated_sensor::Simulator& simulator,

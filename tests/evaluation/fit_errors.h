@@ -17,7 +17,6 @@ struct PosedSurface {
     std::span<const Triangle> triangles; ///< (nf)
     std::span<const body::Part> parts;   ///< (nv)
     const body::JointTransforms& joints; ///< world_from_joint
-    std::uint32_t crotch;                ///< vertex between the legs
 };
 
 /// Which vertices count.
@@ -39,9 +38,6 @@ using Selection = std::function<bool(std::size_t)>;
 /// Head, hands and feet are told apart from the rest.
 [[nodiscard]] bool in_core(const body::TestPerson& person, std::size_t vertex);
 
-/// The model's vertex between the legs, by the rule that finds a test person's. \throw Error
-[[nodiscard]] std::uint32_t crotch_of(const body::BodyModel& model);
-
 /// (nv) 1: some camera of the frame shown sees the vertex: it lies in the picture, not hidden, and
 /// faces the camera by less than 80 degrees off. By the cameras' true places, without noise.
 [[nodiscard]] std::vector<std::uint8_t> seen_vertices(const simulated_sensor::Simulator& simulator,
@@ -56,7 +52,8 @@ girth_errors(const body::TestPerson& person, const PosedSurface& truth, const Po
 /// one's own soles; shoulder_breadth from acromion to acromion; arm_length from the acromion over
 /// elbow to wrist, mean of both sides. Acromion and cervicale are the truth's own landmarks: on the
 /// result the point of its surface that is nearest to where the landmark would lie if it stood as
-/// far from the result's joint as from the truth's. The crotch is a vertex of each.
+/// far from the result's joint as from the truth's. The crotch is where level cuts of the legs
+/// become one, even of thighs that touch.
 [[nodiscard]] std::map<std::string, double> length_errors(const body::TestPerson& person,
                                                           const PosedSurface& truth,
                                                           const PosedSurface& result);
