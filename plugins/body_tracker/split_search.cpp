@@ -121,8 +121,7 @@ Split SplitSearch::best_threshold(std::span<const std::int16_t> values, Scratch&
 }
 
 Split SplitSearch::best(std::size_t tree, std::uint32_t node,
-                        std::span<const std::uint32_t> samples, int first,
-                        Scratch& scratch) const {
+                        std::span<const std::uint32_t> samples, int first, Scratch& scratch) const {
     std::array<DepthFeature, kBlock> drawn;
     const int count = std::min(kBlock, options_.candidates - first);
     for (int c = 0; c < count; ++c)

@@ -42,8 +42,8 @@ void TrainingSet::add(const DepthView& frame, std::span<const Sample> samples) {
     }
     const Box box = find_box(frame);
     const auto index = static_cast<std::uint32_t>(frames_.size());
-    frames_.push_back({box.right - box.left + 1, box.bottom - box.top + 1, frame.focal_px,
-                       depths_.size()});
+    frames_.push_back(
+        {box.right - box.left + 1, box.bottom - box.top + 1, frame.focal_px, depths_.size()});
     for (int y = box.top; y <= box.bottom; ++y) {
         const std::uint16_t* row = frame.mm + static_cast<std::ptrdiff_t>(y) * frame.width;
         depths_.insert(depths_.end(), row + box.left, row + box.right + 1);

@@ -190,7 +190,8 @@ TEST(DepthCamera, LateralNoiseMovesSilhouettesByItsSigma) {
     for (int k = 0; k < 5; ++k) {
         const double share = shown[static_cast<std::size_t>(k)] / (480.0 * kFrames);
         const double outside = first + k - edge;
-        const double expected = 0.5 * std::erfc(outside / imaging::lateral_sigma(0.0) / std::numbers::sqrt2);
+        const double expected =
+            0.5 * std::erfc(outside / imaging::lateral_sigma(0.0) / std::numbers::sqrt2);
         EXPECT_NEAR(share, expected, 0.04) << outside << " pixels";
     }
 }
