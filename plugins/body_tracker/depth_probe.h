@@ -15,9 +15,11 @@ inline int probe(const DepthView& view, int x, int y, std::int64_t scale, int dx
                  int dy_mm) noexcept {
     const std::int64_t px = x + ((dx_mm * scale + 32768) >> 16);
     const std::int64_t py = y + ((dy_mm * scale + 32768) >> 16);
-    if (px < 0 || py < 0 || px >= view.width || py >= view.height) return kFar_mm;
-    const int depth = view.mm[py * view.width + px];
-    return depth == 0 ? kFar_mm : depth;
+    // Without branches: where a place falls is hard to predict. Negative ones wrap to huge ones.
+    const bool inside = (static_cast<std::uint64_t>(px) < static_cast<std::uint64_t>(view.width)) &
+                        (static_cast<std::uint64_t>(py) < static_cast<std::uint64_t>(view.height));
+    const int depth = view.mm[inside ? py * view.width + px : 0];
+    return inside & (depth != 0) ? depth : kFar_mm;
 }
 
 inline int difference(const DepthFeature& f, const DepthView& view, int x, int y,

@@ -14,11 +14,11 @@ struct TrainerOptions {
     int class_count = 0;
     int tree_count = 3;
     int depth = 18;                     ///< levels of questions
-    int candidates = 400;               ///< features tried at a node
+    int candidates = 250;               ///< features tried at a node
     int thresholds = 20;                ///< tried for each, at most 31
     int reach_mm = 1000;                ///< largest offset along an axis
     std::uint32_t min_samples = 20;     ///< a node with fewer becomes a leaf
-    std::uint32_t split_samples = 4000; ///< a question is chosen by at most so many, evenly taken
+    std::uint32_t split_samples = 2500; ///< a question is chosen by at most so many, evenly taken
     std::uint32_t max_leaves = 60000;   ///< of a tree; a full level keeps the best splits only
     /// Weight of a class: (mean number of samples / its number) to this power. 0: rare classes are
     /// ignored, 1: all count the same.

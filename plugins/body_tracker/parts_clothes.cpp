@@ -132,10 +132,9 @@ void dress(const Outfit& outfit, const body::Skeleton& skeleton, std::span<const
         case Cloth::none:
             break;
         }
-        if (outfit.skirt_m > 0.0f && (labels[v] == PartLabel::left_thigh ||
-                                      labels[v] == PartLabel::right_thigh ||
-                                      labels[v] == PartLabel::left_shin ||
-                                      labels[v] == PartLabel::right_shin))
+        if (outfit.skirt_m > 0.0f &&
+            (labels[v] == PartLabel::left_thigh || labels[v] == PartLabel::right_thigh ||
+             labels[v] == PartLabel::left_shin || labels[v] == PartLabel::right_shin))
             widen(outfit, skeleton, normal, position);
     }
 }

@@ -11,14 +11,14 @@ namespace toile::body_tracker {
 
 /// How a body is dressed in one frame; nothing of it when all is 0.
 struct Outfit {
-    float top_m = 0.0f;      ///< how far cloth stands off trunk and arms, at most
-    float bottom_m = 0.0f;   ///< the same of pelvis and legs
+    float top_m = 0.0f;    ///< how far cloth stands off trunk and arms, at most
+    float bottom_m = 0.0f; ///< the same of pelvis and legs
     bool long_sleeves = false, long_legs = false;
-    float skirt_m = 0.0f;    ///< length below the hip joints; 0: none
+    float skirt_m = 0.0f;     ///< length below the hip joints; 0: none
     float skirt_flare = 0.0f; ///< how much wider each metre further down
-    float hair_m = 0.0f;     ///< thickness on the skull
-    bool long_hair = false;  ///< over neck and shoulders behind
-    std::uint64_t folds = 0; ///< seed of the smooth random field
+    float hair_m = 0.0f;      ///< thickness on the skull
+    bool long_hair = false;   ///< over neck and shoulders behind
+    std::uint64_t folds = 0;  ///< seed of the smooth random field
 };
 
 [[nodiscard]] Outfit draw_outfit(Random& random);

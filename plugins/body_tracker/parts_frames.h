@@ -18,7 +18,7 @@ struct FrameRange {
     double upright_share = 0.25; ///< of frames by a camera on its side: width and height exchanged
     std::array<double, 2> camera_height_m = {0.5, 2.2};
     std::array<double, 2> distance_m = {1.5, 4.0};
-    double tilt_rad = 0.26;    ///< aims up to so much above or below the hips
+    double tilt_rad = 0.18;    ///< aims up to so much above or below the hips
     double aside_share = 0.25; ///< the person's place off the axis, in half widths of the view
     double cut_share = 0.15;   ///< of frames with the person up to the picture's edge
     double facing_share = 0.5; ///< of frames where people face the camera, up to 60 degrees off

@@ -19,13 +19,13 @@ namespace toile::body_tracker {
 /// Every joint but the hips turned about a random axis: normal, `sigma_rad` along each axis.
 [[nodiscard]] body::Pose perturbed(const body::Pose& pose, double sigma_rad, Random& random);
 
-/// Stands, each arm where people hold them: hanging, out, up, forward, on the hip, crossed in front,
-/// forearm raised, at the head, behind the back; often both alike. Faces +Z.
+/// Stands, each arm where people hold them: hanging, out, up, forward, on the hip, crossed in
+/// front, forearm raised, at the head, behind the back; often both alike. Faces +Z.
 [[nodiscard]] body::Pose standing_pose(const body::Skeleton& skeleton, Random& random);
 
 /// Of the recorded poses, mirrored half the time and perturbed by 5 to 15 degrees (40 %), standing
-/// (40 %), or anywhere within the joints' limits (20 %); without recorded ones standing and anywhere
-/// have equal shares. Faces +Z.
+/// (40 %), or anywhere within the joints' limits (20 %); without recorded ones standing and
+/// anywhere have equal shares. Faces +Z.
 [[nodiscard]] body::Pose draw_pose(const body::Skeleton& skeleton,
                                    std::span<const body::Pose> recorded, Random& random);
 

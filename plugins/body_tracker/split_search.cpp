@@ -16,18 +16,6 @@ std::uint64_t fold(std::uint64_t sum, std::uint64_t value) {
     return Random(sum ^ value).next();
 }
 
-using Counts = std::array<std::int32_t, kMaxClasses>;
-
-/// Sum over classes of n_c^2 / n: the larger, the purer.
-double purity(const Counts& counts) {
-    std::int64_t squares = 0, total = 0;
-    for (const std::int32_t n : counts) {
-        squares += static_cast<std::int64_t>(n) * n;
-        total += n;
-    }
-    return total > 0 ? static_cast<double>(squares) / static_cast<double>(total) : 0.0;
-}
-
 /// How many of the rising thresholds (31, filled up with kNever) a value reaches.
 std::size_t bin(const std::array<std::int16_t, kThresholds>& thresholds, std::int16_t value) {
     std::size_t at = 0;
@@ -73,12 +61,14 @@ void SplitSearch::evaluate(std::span<const std::uint32_t> samples,
                            std::span<const DepthFeature> features, Scratch& scratch) const {
     const std::size_t used = std::min<std::size_t>(samples.size(), options_.split_samples);
     scratch.classes.resize(used);
+    scratch.all = {};
     scratch.values.resize(used * features.size());
     for (std::size_t i = 0; i < used; ++i) {
         const auto& s = set_.samples()[samples[i * samples.size() / used]];
         const DepthView view = set_.frame(s.frame);
         const std::int64_t scale = pixel_scale(view, view.mm[s.y * view.width + s.x]);
         scratch.classes[i] = static_cast<std::uint8_t>(s.label);
+        scratch.all.add(s.label, weights_[s.label]);
         for (std::size_t f = 0; f < features.size(); ++f)
             scratch.values[f * used + i] = static_cast<std::int16_t>(
                 std::clamp(difference(features[f], view, s.x, s.y, scale), -32766, 32766));
@@ -95,25 +85,29 @@ Split SplitSearch::best_threshold(std::span<const std::int16_t> values, Scratch&
     std::sort(thresholds.begin(), thresholds.begin() + static_cast<std::ptrdiff_t>(tried));
     std::fill(thresholds.begin() + static_cast<std::ptrdiff_t>(tried), thresholds.end(), kNever);
 
-    auto& histogram = scratch.histogram;
-    std::fill_n(histogram.begin(), (tried + 1) * kMaxClasses, 0);
+    // Samples by bin: a counting sort.
+    std::array<std::size_t, kThresholds + 2> first{};
+    scratch.bins.resize(values.size());
+    scratch.sorted.resize(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::size_t c = scratch.classes[i];
-        histogram[bin(thresholds, values[i]) * kMaxClasses + c] +=
-            static_cast<std::int32_t>(weights_[c]);
+        const std::size_t b = bin(thresholds, values[i]);
+        scratch.bins[i] = static_cast<std::uint8_t>(b);
+        ++first[b + 1];
     }
-    Counts below{}, above{};
-    for (std::size_t i = 0; i < (tried + 1) * kMaxClasses; ++i)
-        above[i % kMaxClasses] += histogram[i];
-    const double before = purity(above);
+    for (std::size_t b = 1; b < first.size(); ++b)
+        first[b] += first[b - 1];
+    for (std::size_t i = 0; i < values.size(); ++i) // first[b] ends as the end of bin b
+        scratch.sorted[first[scratch.bins[i]]++] = scratch.classes[i];
+    SplitSide below, above = scratch.all;
+    const double before = above.purity();
     Split best;
-    for (std::size_t t = 0; t < tried; ++t) {
-        for (std::size_t c = 0; c < kMaxClasses; ++c) {
-            below[c] += histogram[t * kMaxClasses + c];
-            above[c] -= histogram[t * kMaxClasses + c];
+    for (std::size_t t = 0, at = 0; t < tried; ++t) {
+        for (; at < first[t]; ++at) {
+            const std::size_t c = scratch.sorted[at];
+            below.add(c, weights_[c]);
+            above.add(c, -static_cast<std::int64_t>(weights_[c]));
         }
-        if (t + 1 < tried && thresholds[t] == thresholds[t + 1]) continue;
-        const double gain = purity(below) + purity(above) - before;
+        const double gain = below.purity() + above.purity() - before;
         // More than rounding: a split that leaves one side empty gains nothing.
         if (gain > 1e-9 * before && gain > best.gain) best = {gain, {}, thresholds[t]};
     }

@@ -14,6 +14,24 @@ struct Split {
     int threshold = 0;
 };
 
+/// Weights of the classes on one side of a threshold, and the sum of their squares.
+class SplitSide {
+  public:
+    void add(std::size_t c, std::int64_t weight) {
+        squares_ += weight * (2 * sums_[c] + weight);
+        sums_[c] += weight;
+        total_ += weight;
+    }
+    /// Sum over classes of n_c^2 / n: the larger, the purer.
+    [[nodiscard]] double purity() const {
+        return total_ > 0 ? static_cast<double>(squares_) / static_cast<double>(total_) : 0.0;
+    }
+
+  private:
+    std::array<std::int64_t, kMaxClasses> sums_{};
+    std::int64_t squares_ = 0, total_ = 0;
+};
+
 /// Whole numbers, so that sums are exact in any order.
 using ClassWeights = std::array<std::uint32_t, kMaxClasses>;
 /// 64 for a class of mean size. \see TrainerOptions::balance
@@ -28,7 +46,9 @@ class SplitSearch {
     struct Scratch {
         std::vector<std::int16_t> values;  // (kBlock x samples)
         std::vector<std::uint8_t> classes; // (samples)
-        std::array<std::int32_t, 32 * kMaxClasses> histogram{};
+        SplitSide all;                     // of the samples
+        std::vector<std::uint8_t> bins;    // (samples) how many thresholds a value reaches
+        std::vector<std::uint8_t> sorted;  // (samples) classes by rising bin
     };
 
     SplitSearch(const TrainingSet& set, const TrainerOptions& options)
