@@ -15,6 +15,7 @@ void add_tryon_commands(CLI::App& app, const GlobalOptions& options);
 void add_view_commands(CLI::App& app, const GlobalOptions& options);
 void add_plugin_commands(CLI::App& app, const GlobalOptions& options);
 void add_record_commands(CLI::App& app, const GlobalOptions& options);
+void add_track_commands(CLI::App& app, const GlobalOptions& options);
 void add_fit_commands(CLI::App& app, const GlobalOptions& options);
 void add_measure_commands(CLI::App& app, const GlobalOptions& options);
 

@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
     toile::apps::add_plugin_commands(app, options);
     toile::apps::add_garment_commands(app, options);
     toile::apps::add_record_commands(app, options);
+    toile::apps::add_track_commands(app, options);
     toile::apps::add_fit_commands(app, options);
     toile::apps::add_measure_commands(app, options);
     app.parse_complete_callback([&] {

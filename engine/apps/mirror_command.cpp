@@ -141,7 +141,11 @@ void mirror(const MirrorOptions& options, const GlobalOptions& global) {
 void add_mirror_commands(CLI::App& app, const GlobalOptions& global) {
     CLI::App* command = app.add_subcommand("mirror", "Dresses a tracked person, frame by frame");
     auto options = std::make_shared<MirrorOptions>();
-    command->add_option("--source", options->source, "Where the person comes from: kinect-log:FILE")
+    command
+        ->add_option("--source", options->source,
+                     "Where the person comes from: openni2: (a camera, its number or FILE.oni), "
+                     "capture:DIR, "
+                     "simulated:SCENARIO.json, kinect-log:FILE")
         ->type_name("URI")
         ->required();
     command->add_option("--garment", options->garments, "Garments, by id, folder or zip")

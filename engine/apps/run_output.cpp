@@ -11,27 +11,48 @@
 namespace toile::apps {
 
 TrackFile::TrackFile(const std::string& folder) {
-    if (folder.empty()) return;
+    if (!folder.empty()) open(std::filesystem::path(folder) / "track.jsonl");
+}
+
+TrackFile TrackFile::named(const std::filesystem::path& file) {
+    TrackFile out;
+    out.open(file);
+    return out;
+}
+
+void TrackFile::open(const std::filesystem::path& file) {
     std::error_code code;
-    std::filesystem::create_directories(folder, code);
-    file_ = (std::filesystem::path(folder) / "track.jsonl").string();
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), code);
+    file_ = file.string();
     out_.open(file_, std::ios::binary);
     if (!out_) throw FileError(file_, "the track cannot be written");
 }
 
 void TrackFile::add(const pipeline::BodyFrame& frame) {
-    if (frames_ == 0) first_ns_ = frame.timestamp_ns;
-    last_ns_ = frame.timestamp_ns;
-    const std::uint64_t index = frames_++;
+    write(frames_, frame.timestamp_ns, std::span(&frame, 1));
+}
+
+void TrackFile::add(std::uint32_t sequence, std::int64_t timestamp_ns,
+                    std::span<const pipeline::BodyFrame> people) {
+    if (frames_ == 0) first_sequence_ = sequence;
+    write(sequence - first_sequence_, timestamp_ns, people);
+}
+
+void TrackFile::write(std::uint64_t number, std::int64_t timestamp_ns,
+                      std::span<const pipeline::BodyFrame> people) {
+    if (frames_++ == 0) first_ns_ = timestamp_ns;
+    last_ns_ = timestamp_ns;
     if (file_.empty()) return;
-    body::TrackedPerson person;
-    person.id = frame.person_id;
-    person.state = static_cast<body::TrackState>(frame.tracking);
-    person.joints = pipeline::transforms_of(frame.joints);
-    for (std::size_t i = 0; i < frame.joints.size(); ++i)
-        person.confidence[i] = frame.joints[i].confidence;
-    out_ << body::track_line(index, 1e-9 * static_cast<double>(last_ns_ - first_ns_),
-                             std::span(&person, 1));
+    std::vector<body::TrackedPerson> told;
+    for (const pipeline::BodyFrame& frame : people) {
+        body::TrackedPerson& person = told.emplace_back();
+        person.id = frame.person_id;
+        person.state = static_cast<body::TrackState>(frame.tracking);
+        person.joints = pipeline::transforms_of(frame.joints);
+        for (std::size_t i = 0; i < frame.joints.size(); ++i)
+            person.confidence[i] = frame.joints[i].confidence;
+    }
+    out_ << body::track_line(number, 1e-9 * static_cast<double>(last_ns_ - first_ns_), told);
     out_.flush();
     if (!out_) throw FileError(file_, "the track cannot be written (is the disk full?)");
 }

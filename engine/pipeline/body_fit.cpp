@@ -4,6 +4,7 @@
 #include "host/mesh_sink.h"
 #include "host/views.h"
 #include "pipeline/body_frame.h"
+#include "pipeline/sensor_views.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,30 +47,6 @@ void copy_body(const toile_body& body, FittedBody& out) {
         if (m.name != nullptr && std::isfinite(m.value))
             out.measurements[m.name] = {m.value, m.confidence};
     }
-}
-
-toile_stream stream_of(const SensorStream& stream, std::uint32_t number) {
-    auto out = host::sized<toile_stream>();
-    out.camera = number;
-    const imaging::Intrinsics& in = stream.depth;
-    out.depth.width = static_cast<std::uint32_t>(in.width);
-    out.depth.height = static_cast<std::uint32_t>(in.height);
-    out.depth.fx = in.fx;
-    out.depth.fy = in.fy;
-    out.depth.cx = in.cx;
-    out.depth.cy = in.cy;
-    std::copy(in.distortion.begin(), in.distortion.end(), out.depth.distortion);
-    out.has_world = stream.world_from_camera ? 1 : 0;
-    const Eigen::Matrix4d place =
-        stream.world_from_camera.value_or(Eigen::Isometry3d::Identity()).matrix();
-    std::copy_n(place.data(), 16, out.world_from_camera);
-    out.frame_period_s = stream.frame_period_s;
-    return out;
-}
-
-toile_view color_view(const imaging::Image& image) {
-    const std::size_t count = image.pixels.size() / 4;
-    return {image.pixels.data(), static_cast<std::uint32_t>(count), 4, TOILE_U8X4, 0};
 }
 
 } // namespace
@@ -122,19 +99,14 @@ void BodyFit::feed_scan(const geometry::TriangleMesh& scan, host::Job& job) {
 void BodyFit::begin_cameras(std::span<const SensorStream> streams, host::Job& job) {
     std::vector<toile_stream> told;
     for (const SensorStream& stream : streams)
-        told.push_back(stream_of(stream, static_cast<std::uint32_t>(told.size())));
+        told.push_back(stream_view(stream, static_cast<std::uint32_t>(told.size())));
     begin(told, job);
 }
 
 void BodyFit::feed_frames(std::span<const SensorFrame> frames) {
-    std::vector<toile_frame> given(frames.size(), host::sized<toile_frame>());
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        given[i].camera = static_cast<std::uint32_t>(i);
-        given[i].sequence = frames[i].sequence;
-        given[i].timestamp_ns = frames[i].timestamp_ns;
-        given[i].depth_m = host::view_of(frames[i].depth.metres);
-        given[i].color = color_view(frames[i].color);
-    }
+    std::vector<toile_frame> given;
+    for (const SensorFrame& frame : frames)
+        given.push_back(frame_view(frame, static_cast<std::uint32_t>(given.size())));
     auto input = host::sized<toile_body_source_input>();
     input.frame_count = static_cast<std::uint32_t>(given.size());
     input.frames = given.data();

@@ -1,6 +1,21 @@
 #include "pipeline/body_frame.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace toile::pipeline {
+
+bool plausible(const JointArray& joints) noexcept {
+    return std::all_of(joints.begin(), joints.end(), [](const toile_joint& joint) {
+        float sum = 0.0f;
+        float norm = 0.0f;
+        for (const float value : joint.position)
+            sum += std::abs(value);
+        for (const float value : joint.rotation)
+            norm += value * value;
+        return std::isfinite(sum) && std::abs(norm - 1.0f) < 1e-2f;
+    });
+}
 
 body::JointTransforms transforms_of(const JointArray& joints) noexcept {
     body::JointTransforms out;

@@ -20,6 +20,8 @@ struct BodyFrame {
     JointArray joints{};
 };
 
+/// Are all joints finite, and their rotations unit quaternions?
+[[nodiscard]] bool plausible(const JointArray& joints) noexcept;
 [[nodiscard]] body::JointTransforms transforms_of(const JointArray& joints) noexcept;
 /// Velocities are zero.
 [[nodiscard]] JointArray joints_of(const body::JointTransforms& world, float confidence) noexcept;

@@ -2,9 +2,7 @@
 
 #include "core/error.h"
 #include "host/instance.h"
-
-#include <algorithm>
-#include <cmath>
+#include "pipeline/people_source.h"
 
 namespace toile::pipeline {
 namespace {
@@ -66,21 +64,38 @@ class PluginSource : public FrameSource {
         return TOILE_OK;
     }
 
-    static bool plausible(const JointArray& joints) noexcept {
-        return std::all_of(joints.begin(), joints.end(), [](const toile_joint& joint) {
-            float sum = 0.0f;
-            float norm = 0.0f;
-            for (const float value : joint.position)
-                sum += std::abs(value);
-            for (const float value : joint.rotation)
-                norm += value * value;
-            return std::isfinite(sum) && std::abs(norm - 1.0f) < 1e-2f;
-        });
-    }
-
     host::Instance instance_;
     const toile_body_source& table_;
     std::string broken_ = "failed without telling why";
+};
+
+/// A sensor's pictures through the tracker; gives the person who was seen first.
+class TrackedSource : public FrameSource {
+  public:
+    TrackedSource(const std::string& uri, host::Registry& registry, host::Services& services,
+                  const BoundaryBody& body, const toile_limits& limits, host::Job& job)
+        : people_(uri, registry, services, limits, {1, &body, true}, job) {}
+
+    toile_status next(BodyFrame& out) noexcept override {
+        try {
+            if (people_.ended()) return TOILE_END_OF_STREAM;
+            if (!people_.next(frame_))
+                return people_.ended() ? TOILE_END_OF_STREAM : TOILE_NO_NEW_DATA;
+        } catch (const std::exception& e) {
+            error_ = e.what();
+            return TOILE_E_INTERNAL;
+        }
+        if (frame_.people.empty() || frame_.people.front().tracking == TOILE_TRACKING_LOST)
+            return TOILE_NO_NEW_DATA;
+        out = frame_.people.front();
+        return TOILE_OK;
+    }
+    std::string error() override { return error_; }
+
+  private:
+    PeopleSource people_;
+    PeopleFrame frame_;
+    std::string error_;
 };
 
 } // namespace
@@ -92,6 +107,8 @@ std::unique_ptr<FrameSource> open_source(const std::string& uri, host::Registry&
     if (colon == std::string::npos || colon == 0)
         throw UsageError("source '" + uri + "' has no scheme; write for example kinect-log:FILE");
     auto plugin = registry.find_scheme(uri.substr(0, colon));
+    if (plugin->manifest().provides_kind(TOILE_SENSOR))
+        return std::make_unique<TrackedSource>(uri, registry, services, body, limits, job);
     return std::make_unique<PluginSource>(std::move(plugin), services, uri.substr(colon + 1), body,
                                           limits, job);
 }

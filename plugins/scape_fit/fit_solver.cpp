@@ -1,6 +1,5 @@
 #include "scape_fit/fit_solver.h"
 
-#include "body/joint_limits.h"
 #include "body/rotations.h"
 
 #include <Eigen/Dense>
@@ -14,48 +13,19 @@ using body::Joint;
 using body::kJointCount;
 
 constexpr std::uint32_t kGrain = 512;
-constexpr double kBeyondLimit = 2.0 * M_PI / 180.0; // radians: deviation past a joint's limit
-constexpr double kLeastRange = 4.0 * M_PI / 180.0;
 constexpr double kMostTurn = 0.35; // radians and ...
 constexpr double kMostShape = 1.5; // ... deviations a step
 
-Eigen::Matrix3d cross_matrix(const Vec3d& v) {
-    Eigen::Matrix3d m;
-    m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-    return m;
-}
-
-/// How the rotation vector r of q changes with a small turn before q.
-Eigen::Matrix3d log_derivative(const Vec3d& r) {
-    const double angle = r.norm();
-    const Eigen::Matrix3d cross = cross_matrix(r);
-    const double factor =
-        angle < 1e-3
-            ? 1.0 / 12.0
-            : 1.0 / (angle * angle) - (1.0 + std::cos(angle)) / (2.0 * angle * std::sin(angle));
-    return Eigen::Matrix3d::Identity() - 0.5 * cross + factor * cross * cross;
-}
-
 } // namespace
 
-FitSolver::FitSolver(const FitModel& model) : model_(model) {
+FitSolver::FitSolver(const FitModel& model)
+    : model_(model), pose_prior_(model.space().model().skeleton) {
     for (std::size_t s = 0; s < body::kSexes.size(); ++s) {
         const body::CoefficientPrior& prior = model.space().prior(body::kSexes[s]);
         populations_[s].mean = prior.mean;
         populations_[s].precision = prior.covariance.inverse();
         const Eigen::VectorXd diagonal = prior.covariance.llt().matrixLLT().diagonal();
         populations_[s].log_determinant = 2.0 * diagonal.array().log().sum();
-    }
-    const body::Skeleton& skeleton = model.space().model().skeleton;
-    for (std::size_t j = 0; j < kJointCount; ++j) {
-        const auto joint = static_cast<Joint>(j);
-        axes_[j] = Mat3f::Identity();
-        const body::JointLimits limits = body::joint_limits(joint);
-        for (int k = 0; k < 3; ++k) {
-            const float high = limits.range[static_cast<std::size_t>(k)].high;
-            if (high <= 0.0f) continue;
-            axes_[j].col(k) = body::limited_rotation(skeleton, joint, Vec3f::Unit(k)) / high;
-        }
     }
 }
 
@@ -139,36 +109,6 @@ void FitSolver::add_shape_prior(const FitPriors& priors, const FitState& state) 
     }
 }
 
-void FitSolver::add_pose_prior(const FitPriors& priors, const FitState& state) {
-    for (std::size_t f = 0; f < state.poses.size(); ++f)
-        for (std::size_t j = 1; j < kJointCount; ++j) {
-            const Vec3d turn = body::rotation_vector(state.poses[f].rotations[j]).cast<double>();
-            const Eigen::Matrix3d inverse = axes_[j].cast<double>().inverse();
-            const Eigen::Matrix3d derivative = inverse * log_derivative(turn);
-            const Vec3d angle = inverse * turn;
-            const body::JointLimits limits = body::joint_limits(static_cast<Joint>(j));
-            const int at = pose_at(f) + 3 + 3 * static_cast<int>(j);
-            for (int a = 0; a < 3; ++a) {
-                const body::AngleRange& range = limits.range[static_cast<std::size_t>(a)];
-                const double half =
-                    std::max(kLeastRange, 0.5 * (static_cast<double>(range.high) - range.low));
-                double weight = priors.pose_weight / (half * half);
-                double pull = weight * angle[a];
-                const double beyond = angle[a] > range.high  ? angle[a] - range.high
-                                      : angle[a] < range.low ? angle[a] - range.low
-                                                             : 0.0;
-                if (beyond != 0.0) {
-                    const double hard = 1.0 / (kBeyondLimit * kBeyondLimit);
-                    weight += hard;
-                    pull += hard * beyond;
-                }
-                const Eigen::RowVector3d row = derivative.row(a);
-                normal_.block<3, 3>(at, at) += weight * row.transpose() * row;
-                gradient_.segment<3>(at) += pull * row.transpose();
-            }
-        }
-}
-
 void FitSolver::add_camera_prior(const FitPriors& priors, const FitState& state) {
     const auto stiffness = [](double deviation) {
         return deviation > 0.0 ? 1.0 / (deviation * deviation) : 1e12;
@@ -195,7 +135,8 @@ void FitSolver::linearise(const FitLevel& level, std::span<const PosedLevel> pos
     for (const AssociatedView& view : views)
         add_pairs(level, posed, view, state, rows);
     add_shape_prior(priors, state);
-    add_pose_prior(priors, state);
+    for (std::size_t f = 0; f < state.poses.size(); ++f)
+        pose_prior_.add(state.poses[f], priors.pose_weight, pose_at(f), normal_, gradient_);
     add_camera_prior(priors, state);
 }
 

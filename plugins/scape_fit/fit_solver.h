@@ -1,6 +1,7 @@
 // One Gauss-Newton step of shape, poses and camera corrections.
 #pragma once
 
+#include "body/pose_prior.h"
 #include "scape_fit/association.h"
 
 #include <optional>
@@ -81,14 +82,13 @@ class FitSolver {
     void add_pairs(const FitLevel& level, std::span<const PosedLevel> posed,
                    const AssociatedView& view, const FitState& state, const RowLoop& rows);
     void add_shape_prior(const FitPriors& priors, const FitState& state);
-    void add_pose_prior(const FitPriors& priors, const FitState& state);
     void add_camera_prior(const FitPriors& priors, const FitState& state);
     [[nodiscard]] int pose_at(std::size_t instant) const;
     [[nodiscard]] int camera_at(const FitState& state, std::size_t camera) const;
 
     const FitModel& model_;
-    std::array<Population, 2> populations_;     ///< in the order of kSexes
-    std::array<Mat3f, body::kJointCount> axes_; ///< of each joint's limits, as columns
+    std::array<Population, 2> populations_; ///< in the order of kSexes
+    body::PosePrior pose_prior_;
     Eigen::MatrixXd normal_;
     Eigen::VectorXd gradient_;
     std::vector<Eigen::MatrixXf> partial_; ///< per range of pairs: normal matrix and gradient

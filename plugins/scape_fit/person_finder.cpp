@@ -1,8 +1,7 @@
 #include "scape_fit/person_finder.h"
 
-#include "core/random.h"
+#include "geometry/floor_plane.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,10 +11,7 @@
 namespace toile::scape_fit {
 namespace {
 
-constexpr int kTries = 300;
 constexpr std::size_t kTestPoints = 4000;
-constexpr float kOnPlane = 0.025f;  // metres: of the floor
-constexpr float kBelow = 0.06f;     // farther below the floor than this is not usual
 constexpr float kFloorCut = 0.035f; // what counts as floor when the person is cut out
 constexpr float kCell = 0.05f;      // metres, of the grid that joins points into pieces
 constexpr float kWallShare = 0.10f; // of all points: a plane with so many may be a wall
@@ -27,63 +23,6 @@ constexpr float kCompanion = 0.5f; // metres from the person's middle line, for 
 constexpr std::uint32_t kFewPoints = 50;
 constexpr float kFarthest = 5.0f;   // metres: a depth camera knows too little beyond
 constexpr float kFloorTilt = 0.26f; // radians from +Y
-
-std::vector<Vec3f> some(std::span<const Vec3f> points, std::size_t count) {
-    std::vector<Vec3f> out;
-    const std::size_t step = std::max<std::size_t>(1, points.size() / count);
-    for (std::size_t i = 0; i < points.size(); i += step)
-        out.push_back(points[i]);
-    return out;
-}
-
-/// A plane through three random points; the best by `score` of many.
-template <class Accept, class Score>
-std::optional<geometry::Plane> best_plane(std::span<const Vec3f> points, const Accept& accept,
-                                          const Score& score) {
-    if (points.size() < 3) return std::nullopt;
-    Random random(1);
-    std::optional<geometry::Plane> best;
-    double most = 0.0;
-    for (int i = 0; i < kTries; ++i) {
-        const auto pick = [&] {
-            return points[static_cast<std::size_t>(
-                random.uniform(0.0, static_cast<double>(points.size()) - 1e-6))];
-        };
-        const Vec3f a = pick(), b = pick(), c = pick();
-        Vec3f normal = (b - a).cross(c - a);
-        if (normal.norm() < 1e-4f) continue;
-        normal.normalize();
-        if (!accept(normal)) continue;
-        const auto plane = geometry::Plane::through(a, normal);
-        const double s = score(plane);
-        if (s > most) most = s, best = plane;
-    }
-    return best;
-}
-
-/// Least squares through the points near a plane, a few times.
-geometry::Plane refined(geometry::Plane plane, std::span<const Vec3f> points, float reach) {
-    for (int round = 0; round < 4; ++round) {
-        Vec3f mean = Vec3f::Zero();
-        std::vector<Vec3f> on;
-        for (const Vec3f& p : points)
-            if (std::abs(plane.normal.dot(p) - plane.offset) < reach) {
-                on.push_back(p);
-                mean += p;
-            }
-        if (on.size() < 10) break;
-        mean /= static_cast<float>(on.size());
-        Mat3f covariance = Mat3f::Zero();
-        for (const Vec3f& p : on)
-            covariance += (p - mean) * (p - mean).transpose();
-        Eigen::SelfAdjointEigenSolver<Mat3f> solver;
-        solver.computeDirect(covariance);
-        Vec3f normal = solver.eigenvectors().col(0).normalized();
-        if (normal.dot(plane.normal) < 0.0f) normal = -normal;
-        plane = geometry::Plane::through(mean, normal);
-    }
-    return plane;
-}
 
 /// As a wall is, from top to bottom: what lies in one plane with a person's side or back may be
 /// wide somewhere.
@@ -115,7 +54,7 @@ void remove_walls(std::span<const Vec3f> points, const Vec3f& up, std::vector<st
         std::vector<Vec3f> left;
         for (std::size_t i = 0; i < points.size(); ++i)
             if (keep[i] != 0) left.push_back(points[i]);
-        const auto test = some(left, kTestPoints);
+        const auto test = geometry::thinned_out(left, kTestPoints);
         const auto count_on = [&](const geometry::Plane& plane) {
             return static_cast<double>(std::count_if(test.begin(), test.end(), [&](const Vec3f& p) {
                 return std::abs(plane.normal.dot(p) - plane.offset) < kOnWall;
@@ -130,10 +69,10 @@ void remove_walls(std::span<const Vec3f> points, const Vec3f& up, std::vector<st
             }
             return std::min(beside[0], beside[1]) * 50 > test.size() ? 0.0 : count_on(plane);
         };
-        const auto found = best_plane(
+        const auto found = geometry::best_plane(
             test, [&](const Vec3f& n) { return std::abs(n.dot(up)) < 0.2f; }, of_wall);
         if (!found || count_on(*found) < kWallShare * static_cast<double>(test.size())) return;
-        const geometry::Plane plane = refined(*found, test, kOnWall);
+        const geometry::Plane plane = geometry::refined_plane(*found, test, kOnWall);
         if (!wide_and_high(plane, test, up)) return;
         for (std::size_t i = 0; i < points.size(); ++i)
             if (std::abs(plane.normal.dot(points[i]) - plane.offset) < kOnWall) keep[i] = 0;
@@ -205,27 +144,6 @@ bool of_human_size(const Piece& piece) {
 
 } // namespace
 
-std::optional<geometry::Plane> find_floor(std::span<const Vec3f> points, const Vec3f& up_hint,
-                                          float most_angle) {
-    const auto test = some(points, kTestPoints);
-    const float least = std::cos(most_angle);
-    const auto count_on = [&](geometry::Plane plane) {
-        if (plane.normal.dot(up_hint) < 0.0f) plane = {-plane.normal, -plane.offset};
-        double on = 0.0, below = 0.0;
-        for (const Vec3f& p : test) {
-            const float height = plane.normal.dot(p) - plane.offset;
-            on += std::abs(height) < kOnPlane ? 1.0 : 0.0;
-            below += height < -kBelow ? 1.0 : 0.0;
-        }
-        return below > 0.02 * static_cast<double>(test.size()) ? 0.0 : on;
-    };
-    auto found = best_plane(
-        test, [&](const Vec3f& n) { return std::abs(n.dot(up_hint)) > least; }, count_on);
-    if (!found || count_on(*found) < 0.03 * static_cast<double>(test.size())) return std::nullopt;
-    if (found->normal.dot(up_hint) < 0.0f) found = {{-found->normal, -found->offset}};
-    return refined(*found, test, kOnPlane);
-}
-
 FoundPerson find_person(std::span<const Vec3f> points, const Vec3f& up,
                         const std::optional<geometry::Plane>& floor) {
     FoundPerson out;
@@ -283,7 +201,7 @@ ObservedPerson observe_person(std::span<const std::shared_ptr<DepthView>> views,
         out.trouble = "the depth pictures have no reading within 5 m";
         return out;
     }
-    out.floor = find_floor(points, Vec3f::UnitY(), kFloorTilt);
+    out.floor = geometry::find_floor(points, Vec3f::UnitY(), kFloorTilt);
     const FoundPerson found = find_person(points, Vec3f::UnitY(), out.floor);
     out.trouble = found.trouble;
     out.height_m = found.height_m;

@@ -11,11 +11,6 @@
 
 namespace toile::scape_fit {
 
-/// The plane with most points that has nearly all others on one side, its normal towards them.
-/// `up_hint`: unit, and how far from it the normal may be, radians. Deterministic.
-[[nodiscard]] std::optional<geometry::Plane> find_floor(std::span<const Vec3f> points,
-                                                        const Vec3f& up_hint, float most_angle);
-
 struct FoundPerson {
     std::vector<std::uint8_t> mask; ///< 1 for each point of the person
     std::size_t count = 0;          ///< of the person's points

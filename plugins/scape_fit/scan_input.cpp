@@ -1,5 +1,7 @@
 #include "scape_fit/scan_input.h"
 
+#include "geometry/floor_plane.h"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -89,7 +91,7 @@ std::vector<Vec3f> axes() {
 
 /// A floor with a person on it: flat, beyond the feet on all sides, and people are tall above it.
 std::optional<geometry::Plane> floor_along(std::span<const Vec3f> points, const Vec3f& axis) {
-    const auto floor = find_floor(points, axis, kFloorTilt);
+    const auto floor = geometry::find_floor(points, axis, kFloorTilt);
     if (!floor) return std::nullopt;
     const Vec3f across = floor->normal.unitOrthogonal(), other = floor->normal.cross(across);
     std::size_t on = 0;

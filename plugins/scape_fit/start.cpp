@@ -1,5 +1,7 @@
 #include "scape_fit/start.h"
 
+#include "body/usual_poses.h"
+
 #include "body/rotations.h"
 
 #include <Eigen/Eigenvalues>
@@ -18,52 +20,7 @@ constexpr int kShifts = 4;
 constexpr std::size_t kFewer = 5;      // every n-th point for the quick look
 constexpr std::size_t kGoodLook = 300; // candidates looked at with all points
 
-/// Degrees of a left arm: the shoulder's and the upper arm's lift, the arm's way forward, and the
-/// elbow's bend. The right arm mirrors it.
-struct ArmPose {
-    float collar = 0.0f, lift = 0.0f, forward = 0.0f, elbow = 0.0f, turn = 0.0f;
-};
-constexpr std::array<ArmPose, 7> kArms{{
-    {0.0f, -38.0f, 0.0f, 10.0f, 0.0f},    // hanging
-    {0.0f, 0.0f, 0.0f, 0.0f, 0.0f},       // as at rest
-    {5.0f, 42.0f, 0.0f, 0.0f, 0.0f},      // out
-    {25.0f, 80.0f, 0.0f, 10.0f, 0.0f},    // up
-    {0.0f, -5.0f, 70.0f, 10.0f, 0.0f},    // forward
-    {0.0f, -8.0f, -15.0f, 85.0f, -50.0f}, // on the hips
-    {10.0f, 45.0f, 0.0f, 90.0f, -60.0f},  // out, forearms up
-}};
-/// Further ways, of one arm only.
-constexpr std::array<ArmPose, 3> kSingleArms{{
-    {0.0f, -30.0f, 0.0f, 70.0f, 0.0f},   // hanging, forearm forward
-    {0.0f, -20.0f, -35.0f, 50.0f, 0.0f}, // swung back
-    {0.0f, 10.0f, 90.0f, 80.0f, 0.0f},   // before the chest
-}};
 constexpr std::array<float, 2> kLegs{0.0f, 12.0f}; // degrees apart, more than at rest
-
-body::Pose library_pose(const body::Skeleton& skeleton, const ArmPose& arm, float legs) {
-    body::Pose out;
-    const auto turn = [&](Joint joint, const Quatf& q) {
-        out.rotations[static_cast<std::size_t>(joint)] = q;
-    };
-    const auto along = [&](Joint from, Joint to) {
-        return Vec3f((skeleton.rest(to) - skeleton.rest(from)).normalized());
-    };
-    const auto both = [&](Joint left, const Quatf& q) {
-        turn(left, q);
-        turn(body::opposite_joint(left), Quatf(q.w(), q.x(), -q.y(), -q.z()));
-    };
-    const Vec3f upper = along(Joint::left_upper_arm, Joint::left_lower_arm);
-    const Vec3f lower = along(Joint::left_lower_arm, Joint::left_hand);
-    const Vec3f forward = upper.cross(Vec3f::UnitZ()).normalized();
-    const Vec3f bend = lower.cross(Vec3f::UnitZ()).normalized();
-    both(Joint::left_shoulder, body::about(Vec3f::UnitZ(), arm.collar * kDegree));
-    both(Joint::left_upper_arm, body::about(Vec3f::UnitZ(), arm.lift * kDegree) *
-                                    body::about(forward, arm.forward * kDegree) *
-                                    body::about(upper, arm.turn * kDegree));
-    both(Joint::left_lower_arm, body::about(bend, arm.elbow * kDegree));
-    both(Joint::left_upper_leg, body::about(Vec3f::UnitZ(), legs * kDegree));
-    return out;
-}
 
 /// Middle of a sex's people, moved along their largest variation.
 ShapeVector library_shape(const body::BodySpace& space, body::Sex sex, double deviations) {
@@ -98,19 +55,18 @@ bool alike(const Start& a, const Start& b) {
 
 StartLibrary::StartLibrary(const FitModel& model) {
     const body::Skeleton& usual = model.space().model().skeleton;
-    for (const ArmPose& arm : kArms)
-        arms_.push_back(library_pose(usual, arm, 0.0f));
-    for (const ArmPose& arm : kSingleArms)
-        arms_.push_back(library_pose(usual, arm, 0.0f));
+    for (const auto arms : {body::usual_arms(), body::single_arms()})
+        for (const body::ArmPose& arm : arms)
+            arms_.push_back(body::usual_pose(usual, arm, 0.0f));
     const FitLevel& level = model.level(model.level_count() - 1);
     PosedLevel posed;
     for (const body::Sex sex : body::kSexes)
         for (const double deviations : {-1.0, 1.0}) {
             const ShapeVector shape = library_shape(model.space(), sex, deviations);
             const body::Skeleton skeleton = model.skeleton(shape);
-            for (const ArmPose& arm : kArms)
+            for (const body::ArmPose& arm : body::usual_arms())
                 for (const float legs : kLegs) {
-                    const body::Pose pose = library_pose(skeleton, arm, legs);
+                    const body::Pose pose = body::usual_pose(skeleton, arm, legs);
                     pose_level(model, level, {shape, {}}, pose, posed);
                     Entry entry{shape,
                                 pose,
@@ -129,18 +85,11 @@ StartLibrary::StartLibrary(const FitModel& model) {
 }
 
 std::size_t StartLibrary::arm_count() noexcept {
-    return kArms.size() + kSingleArms.size();
+    return body::usual_arms().size() + body::single_arms().size();
 }
 
 body::Pose StartLibrary::with_arm(const body::Pose& pose, bool left, std::size_t way) const {
-    body::Pose out = pose;
-    for (Joint joint :
-         {Joint::left_shoulder, Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_hand}) {
-        if (!left) joint = body::opposite_joint(joint);
-        const auto j = static_cast<std::size_t>(joint);
-        out.rotations[j] = arms_[way].rotations[j];
-    }
-    return out;
+    return body::with_arm(pose, left, arms_[way]);
 }
 
 std::vector<Start> StartLibrary::find(std::span<const Vec3f> points, std::span<const Vec3f> ups,

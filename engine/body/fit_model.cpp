@@ -1,4 +1,4 @@
-#include "scape_fit/fit_model.h"
+#include "body/fit_model.h"
 
 #include "body/rotations.h"
 #include "geometry/laplacian.h"
@@ -6,26 +6,22 @@
 #include <limits>
 #include <numeric>
 
-namespace toile::scape_fit {
+namespace toile::body {
 namespace {
-
-using body::Joint;
-using body::kJointCount;
-
 /// Fingers and faces differ from the model in ways that it has no unknowns for.
-float trust_of(const body::BodyModel& model, std::uint32_t vertex) {
+float trust_of(const BodyModel& model, std::uint32_t vertex) {
     float hand = 0.0f;
     for (std::size_t k = 0; k < 4; ++k) {
         const auto joint = static_cast<Joint>(model.skin.joints[vertex][k]);
         if (joint == Joint::left_hand || joint == Joint::right_hand)
             hand += model.skin.weights[vertex][k];
     }
-    if (model.parts[vertex] == body::Part::head) return 0.6f;
+    if (model.parts[vertex] == Part::head) return 0.6f;
     return 1.0f - 0.8f * hand;
 }
 
-bool may_be_clothed(const body::BodyModel& model, std::uint32_t vertex) {
-    if (model.parts[vertex] == body::Part::head) return false;
+bool may_be_clothed(const BodyModel& model, std::uint32_t vertex) {
+    if (model.parts[vertex] == Part::head) return false;
     float bare = 0.0f;
     for (std::size_t k = 0; k < 4; ++k)
         switch (static_cast<Joint>(model.skin.joints[vertex][k])) {
@@ -43,26 +39,26 @@ bool may_be_clothed(const body::BodyModel& model, std::uint32_t vertex) {
     return bare < 0.5f;
 }
 
-bool in_face(const body::BodyModel& model, std::uint32_t vertex) {
+bool in_face(const BodyModel& model, std::uint32_t vertex) {
     const float brow = model.rest.positions[model.landmarks.at("brow")].y();
     const float chin = model.skeleton.rest(Joint::head).y();
     const float y = model.rest.positions[vertex].y();
-    return model.parts[vertex] == body::Part::head && y > chin && y < brow &&
+    return model.parts[vertex] == Part::head && y > chin && y < brow &&
            model.rest.normals[vertex].z() > 0.4f;
 }
 
-std::array<float, kJointCount> shares_below(const body::SkinWeights& skin, std::size_t vertex) {
+std::array<float, kJointCount> shares_below(const SkinWeights& skin, std::size_t vertex) {
     std::array<float, kJointCount> out{};
     for (std::size_t k = 0; k < 4; ++k)
         for (std::optional<Joint> j = static_cast<Joint>(skin.joints[vertex][k]); j;
-             j = body::joint_parent(*j))
+             j = joint_parent(*j))
             out[static_cast<std::size_t>(*j)] += skin.weights[vertex][k];
     return out;
 }
 
-FitLevel make_fit_level(const body::BodySpace& space, const body::PoseTables& tables,
+FitLevel make_fit_level(const BodySpace& space, const PoseTables& tables,
                         std::vector<std::uint32_t> vertices, std::vector<Triangle> triangles) {
-    const body::BodyModel& model = space.model();
+    const BodyModel& model = space.model();
     const int k = space.component_count();
     FitLevel out;
     out.vertices = std::move(vertices);
@@ -95,12 +91,12 @@ FitLevel make_fit_level(const body::BodySpace& space, const body::PoseTables& ta
 } // namespace
 
 FitModel::FitModel(const std::filesystem::path& folder)
-    : space_(body::BodySpace::load(folder)), tables_(body::load_pose_tables(space_.model())) {
-    const body::BodyModel& model = space_.model();
+    : space_(BodySpace::load(folder)), tables_(load_pose_tables(space_.model())) {
+    const BodyModel& model = space_.model();
     std::vector<std::uint32_t> all(model.rest.positions.size());
     std::iota(all.begin(), all.end(), 0u);
     levels_.push_back(make_fit_level(space_, tables_, all, model.rest.triangles));
-    for (const body::BodyLevel& level : space_.levels())
+    for (const BodyLevel& level : space_.levels())
         levels_.push_back(make_fit_level(space_, tables_, level.vertices, level.triangles));
     const int k = component_count();
     joint_components_.resize(3 * static_cast<int>(kJointCount), k);
@@ -110,8 +106,8 @@ FitModel::FitModel(const std::filesystem::path& folder)
                 model.shape[static_cast<std::size_t>(c)].joint_offsets[j];
 }
 
-body::Skeleton FitModel::skeleton(const ShapeVector& shape) const {
-    body::Skeleton out = space_.model().skeleton;
+Skeleton FitModel::skeleton(const ShapeVector& shape) const {
+    Skeleton out = space_.model().skeleton;
     const Eigen::VectorXf moved = joint_components_ * shape.cast<float>();
     for (std::size_t j = 0; j < kJointCount; ++j)
         out.rest_positions[j] += moved.segment<3>(static_cast<int>(3 * j));
@@ -119,7 +115,7 @@ body::Skeleton FitModel::skeleton(const ShapeVector& shape) const {
 }
 
 void pose_level(const FitModel& model, const FitLevel& level, const FitShape& shape,
-                const body::Pose& pose, PosedLevel& out) {
+                const Pose& pose, PosedLevel& out) {
     const std::size_t n = level.vertices.size();
     const Eigen::VectorXf moved = level.components * shape.coefficients.cast<float>();
     out.rest.resize(n);
@@ -132,16 +128,13 @@ void pose_level(const FitModel& model, const FitLevel& level, const FitShape& sh
     out.positions.resize(n);
     out.normals.resize(n);
     out.rotations.resize(n);
-    out.world = body::forward_kinematics(out.skeleton, pose);
-    const auto motions =
-        body::to_dual_quaternions(body::skinning_transforms(out.skeleton, out.world));
-    const body::RotationVectors turns = body::rotation_vectors(pose);
+    out.world = forward_kinematics(out.skeleton, pose);
+    const auto motions = to_dual_quaternions(skinning_transforms(out.skeleton, out.world));
+    const RotationVectors turns = rotation_vectors(pose);
     for (std::size_t v = 0; v < n; ++v) {
-        const RigidTransform skin =
-            body::blend(motions, level.skin.joints[v], level.skin.weights[v]);
-        const Vec3f rest =
-            out.rest[v] +
-            level.correctives.weights[v] * body::pose_features(turns, level.correctives.joints[v]);
+        const RigidTransform skin = blend(motions, level.skin.joints[v], level.skin.weights[v]);
+        const Vec3f rest = out.rest[v] + level.correctives.weights[v] *
+                                             pose_features(turns, level.correctives.joints[v]);
         out.positions[v] = skin * rest;
         out.rotations[v] = skin.rotation;
     }
@@ -151,7 +144,7 @@ void pose_level(const FitModel& model, const FitLevel& level, const FitShape& sh
     out.joint_moves.resize(local.rows(), local.cols());
     out.joint_moves.topRows<3>().setZero();
     for (std::size_t j = 1; j < kJointCount; ++j) {
-        const auto p = static_cast<std::size_t>(*body::joint_parent(static_cast<Joint>(j)));
+        const auto p = static_cast<std::size_t>(*joint_parent(static_cast<Joint>(j)));
         const Mat3f turn = out.world[p].rotation.toRotationMatrix();
         out.joint_moves.middleRows<3>(static_cast<int>(3 * j)) =
             out.joint_moves.middleRows<3>(static_cast<int>(3 * p)) +
@@ -160,8 +153,8 @@ void pose_level(const FitModel& model, const FitLevel& level, const FitShape& sh
     }
 }
 
-body::BodyShape rest_shape(const FitModel& model, const FitShape& shape) {
-    body::BodyShape out = model.space().shape(
+BodyShape rest_shape(const FitModel& model, const FitShape& shape) {
+    BodyShape out = model.space().shape(
         {shape.coefficients.data(), static_cast<std::size_t>(shape.coefficients.size())});
     if (shape.offsets.empty()) return out;
     const FitLevel& full = model.level(0);
@@ -201,20 +194,20 @@ void motion_row(const FitModel& model, const FitLevel& level, const PosedLevel& 
         const float share = level.below[vertex][j];
         if (share == 0.0f) continue;
         Vec3f turn = share * (posed.positions[vertex] - posed.world[j].translation).cross(normal);
-        if (const auto parent = body::joint_parent(static_cast<Joint>(j)))
+        if (const auto parent = joint_parent(static_cast<Joint>(j)))
             turn = posed.world[static_cast<std::size_t>(*parent)].rotation.conjugate() * turn;
         pose.segment<3>(static_cast<int>(3 + 3 * j)) = turn.transpose();
     }
 }
 
-body::Pose moved_pose(const body::Pose& pose, const double* step) {
-    body::Pose out = pose;
+Pose moved_pose(const Pose& pose, const double* step) {
+    Pose out = pose;
     out.hips_position += Eigen::Map<const Vec3d>(step).cast<float>();
     for (std::size_t j = 0; j < kJointCount; ++j) {
         const Vec3f turn = Eigen::Map<const Vec3d>(step + 3 + 3 * j).cast<float>();
-        out.rotations[j] = (body::from_rotation_vector(turn) * out.rotations[j]).normalized();
+        out.rotations[j] = (from_rotation_vector(turn) * out.rotations[j]).normalized();
     }
     return out;
 }
 
-} // namespace toile::scape_fit
+} // namespace toile::body

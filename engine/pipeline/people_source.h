@@ -1,0 +1,77 @@
+// A sensor and a tracker together: pictures in, people out.
+#pragma once
+
+#include "body/track_file.h"
+#include "pipeline/boundary_views.h"
+#include "pipeline/frame_source.h"
+#include "pipeline/sensor_source.h"
+#include "pipeline/stage_clock.h"
+
+#include <map>
+
+namespace toile::pipeline {
+
+/// A tracked person's own shape, kept by the reader.
+struct PersonShape {
+    std::uint64_t revision = 0;
+    body::Skeleton skeleton; ///< at rest
+    std::vector<Vec3f> rest; ///< (nv)
+    std::vector<Triangle> triangles;
+    body::SkinWeights skin;
+};
+
+struct PeopleFrame {
+    std::uint32_t sequence = 0;
+    std::int64_t timestamp_ns = 0;
+    std::vector<BodyFrame> people;     ///< world, or the camera's frame when it has no place
+    std::vector<std::uint64_t> shapes; ///< revision of each, of PeopleSource::shape; 0: none told
+};
+
+/// How a tracker is wished to work.
+struct TrackingWish {
+    std::uint32_t most_people = 1;
+    const BoundaryBody* body = nullptr; ///< people are given its bones; null: their own are found
+    bool smoothing = true;
+};
+
+/// Not movable. The first camera's frames are used.
+class PeopleSource {
+  public:
+    /// Among the body sources the tracker is the one that is fed frames and answers after each.
+    /// \throw UsageError for a URI without a scheme, Error when it cannot be opened [worker]
+    PeopleSource(const std::string& uri, host::Registry& registry, host::Services& services,
+                 const toile_limits& limits, const TrackingWish& wish, host::Job& job);
+    ~PeopleSource();
+    PeopleSource(const PeopleSource&) = delete;
+    PeopleSource& operator=(const PeopleSource&) = delete;
+
+    /// True when there was a frame. \throw Error when sensor or tracker fails
+    bool next(PeopleFrame& out);
+    [[nodiscard]] bool ended() const { return sensor_.ended(0); }
+
+    [[nodiscard]] const SensorStream& stream() const { return sensor_.streams().front(); }
+    /// The pictures of the frame that `next` gave last.
+    [[nodiscard]] const SensorFrame& pictures() const noexcept { return pictures_; }
+    /// \throw std::out_of_range for a revision that no frame told
+    [[nodiscard]] const PersonShape& shape(std::uint64_t revision) const {
+        return shapes_.at(revision);
+    }
+    /// CPU time of tracking a frame.
+    [[nodiscard]] const DurationHistogram& tracking_time() const noexcept { return time_; }
+    [[nodiscard]] const std::string& tracker_id() const noexcept { return tracker_->id(); }
+
+  private:
+    void read_people(PeopleFrame& out);
+    void keep_shape(const toile_body& body);
+
+    SensorSource sensor_;
+    std::unique_ptr<host::Instance> tracker_;
+    const toile_body_source* table_ = nullptr;
+    SensorFrame pictures_;
+    std::map<std::uint64_t, PersonShape> shapes_;
+    std::vector<JointArray> joints_;
+    std::vector<toile_person> people_;
+    DurationHistogram time_;
+};
+
+} // namespace toile::pipeline

@@ -1,0 +1,177 @@
+#include "body_tracker/body_tracking.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toile::body_tracker {
+namespace {
+
+constexpr float kUsualStep = 1.0f / 30.0f;
+constexpr float kLongestStep = 1.0f; // seconds
+constexpr float kOwn = 0.12f;        // metres from a person's bones: that person's
+constexpr float kGrow = 0.45f;       // as far may what hangs on such cells reach
+constexpr float kSamePerson = 0.9f;  // metres between where somebody went and came back
+constexpr std::uint32_t kDoubts = 3; // searches before a piece counts as scene
+constexpr float kSamePiece = 0.5f;   // metres that one moves between two frames at most
+constexpr std::size_t kFewCells = 80;
+
+std::optional<geometry::Plane> floor_of(const CameraPlace& place) {
+    if (!place) return std::nullopt;
+    const Eigen::Isometry3d camera_from_world = place->inverse();
+    const Vec3f up = (camera_from_world.linear() * Vec3d::UnitY()).cast<float>();
+    return geometry::Plane::through(camera_from_world.translation().cast<float>(), up);
+}
+
+} // namespace
+
+BodyTracking::BodyTracking(const body::FitModel& model, const imaging::Intrinsics& camera,
+                           const CameraPlace& world_from_camera, const TrackingOptions& options)
+    : options_(options), reducer_(camera), grid_(reducer_.blank()),
+      scene_(reducer_.grid(), floor_of(world_from_camera)), owner_(reducer_.grid().size(), 0) {
+    options_.most_people = std::clamp<std::size_t>(options.most_people, 1, kMostPeople);
+    for (std::size_t i = 0; i < options_.most_people; ++i)
+        people_.push_back(std::make_unique<PersonTrack>(model, reducer_.grid(), options_.person));
+    stack_.reserve(reducer_.grid().size());
+}
+
+float BodyTracking::step_to(std::int64_t timestamp_ns) noexcept {
+    const float dt = 1e-9f * static_cast<float>(timestamp_ns - last_ns_);
+    const bool usual = !started_ || dt <= 0.0f || dt > kLongestStep;
+    started_ = true;
+    last_ns_ = timestamp_ns;
+    return usual ? kUsualStep : dt;
+}
+
+SeenPerson BodyTracking::seen_by(PersonTrack& person) const noexcept {
+    return {grid_, person.mask(), scene_.floor()};
+}
+
+/// Foreground cells near somebody's bones are theirs, and so is what hangs on them.
+void BodyTracking::share_out() noexcept {
+    const GridCamera& camera = grid_.camera;
+    std::fill(owner_.begin(), owner_.end(), std::uint8_t{0});
+    stack_.clear();
+    const auto labels = scene_.labels();
+    const auto point = [&](std::size_t i) {
+        const auto n = static_cast<int>(i);
+        return camera.point(static_cast<float>(n % camera.width),
+                            static_cast<float>(n / camera.width), grid_.depth[i]);
+    };
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (labels[i] == 0) continue;
+        float best = kOwn;
+        for (std::size_t p = 0; p < people_.size(); ++p) {
+            if (!people_[p]->active()) continue;
+            const float distance = people_[p]->bones()(point(i));
+            if (distance < best) best = distance, owner_[i] = static_cast<std::uint8_t>(p + 1);
+        }
+        if (owner_[i] != 0) stack_.push_back(static_cast<std::uint32_t>(i));
+    }
+    for (std::size_t at = 0; at < stack_.size(); ++at) {
+        const auto i = static_cast<int>(stack_[at]);
+        const int x = i % camera.width, y = i / camera.width;
+        constexpr std::array<std::array<int, 2>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+        for (const auto& [dx, dy] : kSides) {
+            if (x + dx < 0 || y + dy < 0 || x + dx >= camera.width || y + dy >= camera.height)
+                continue;
+            const auto n = static_cast<std::size_t>(i + dy * camera.width + dx);
+            const std::uint8_t owner = owner_[static_cast<std::size_t>(i)];
+            if (labels[n] == 0 || owner_[n] != 0 ||
+                !SceneWatch::joined(grid_.depth[static_cast<std::size_t>(i)], grid_.depth[n]) ||
+                people_[static_cast<std::size_t>(owner - 1)]->bones()(point(n)) > kGrow)
+                continue;
+            owner_[n] = owner;
+            stack_.push_back(static_cast<std::uint32_t>(n));
+        }
+    }
+    for (std::size_t p = 0; p < people_.size(); ++p) {
+        if (!people_[p]->active()) continue;
+        PersonMask& mask = people_[p]->mask();
+        for (std::size_t i = 0; i < owner_.size(); ++i)
+            mask.cells[i] = owner_[i] == p + 1 ? 1 : 0;
+        find_nearest(camera, mask);
+    }
+}
+
+void BodyTracking::follow_all(float dt) noexcept {
+    for (const auto& person : people_) {
+        if (!person->active()) continue;
+        const std::uint32_t id = person->id();
+        person->follow(seen_by(*person), scene_.up(), dt);
+        if (!person->active()) forget(id, *person);
+        if (person->unseen_s() > options_.forget_s) person->stop();
+    }
+}
+
+/// Somebody who turned out to be nobody: the piece is doubted, the number is used again.
+void BodyTracking::forget(std::uint32_t id, PersonTrack& person) noexcept {
+    if (id + 1 == next_id_) --next_id_;
+    for (const Piece& piece : scene_.people_like()) {
+        std::size_t shared = 0;
+        for (std::size_t i = 0; i < owner_.size(); ++i)
+            shared += scene_.labels()[i] == piece.label && person.mask().cells[i] != 0 ? 1 : 0;
+        if (2 * shared > piece.cells) doubt(piece);
+    }
+}
+
+bool BodyTracking::mask_piece(const Piece& piece, PersonTrack& person) const noexcept {
+    PersonMask& mask = person.mask();
+    for (std::size_t i = 0; i < owner_.size(); ++i)
+        mask.cells[i] = scene_.labels()[i] == piece.label && owner_[i] == 0 ? 1 : 0;
+    find_nearest(grid_.camera, mask);
+    return mask.count >= kFewCells && 2 * mask.count >= piece.cells;
+}
+
+PersonTrack* BodyTracking::free_track() noexcept {
+    for (const auto& person : people_)
+        if (!person->active()) return person.get();
+    return nullptr;
+}
+
+PersonTrack* BodyTracking::remembered_near(const Vec3f& place) noexcept {
+    for (const auto& person : people_)
+        if (person->active() && person->following() == Following::lost &&
+            (person->pose().hips_position - place).norm() < kSamePerson)
+            return person.get();
+    return nullptr;
+}
+
+/// Looks for somebody new, once a frame.
+void BodyTracking::welcome() noexcept {
+    for (const Piece& piece : scene_.people_like()) {
+        PersonTrack* const known = remembered_near(piece.middle);
+        PersonTrack* const person = known != nullptr ? known : free_track();
+        if (person == nullptr) return;
+        if (!mask_piece(piece, *person)) continue;
+        if (person->start(known != nullptr ? known->id() : next_id_, seen_by(*person),
+                          scene_.up())) {
+            if (known == nullptr) ++next_id_;
+            for (std::size_t i = 0; i < owner_.size(); ++i)
+                if (person->mask().cells[i] != 0) owner_[i] = 1;
+        } else {
+            doubt(piece);
+        }
+        return;
+    }
+}
+
+/// What was no person several times in a row is scene.
+void BodyTracking::doubt(const Piece& piece) noexcept {
+    doubts_ = (piece.middle - doubted_).norm() < kSamePiece ? doubts_ + 1 : 1;
+    doubted_ = piece.middle;
+    if (doubts_ >= kDoubts) scene_.dismiss(grid_, piece.label);
+}
+
+void BodyTracking::update(const float* metres, std::int64_t timestamp_ns) noexcept {
+    const float dt = step_to(timestamp_ns);
+    reducer_.reduce(metres, grid_);
+    scene_.look(grid_);
+    for (const auto& person : people_)
+        if (person->active()) person->predict(dt);
+    share_out();
+    follow_all(dt);
+    welcome();
+    scene_.learn(grid_, owner_, dt);
+}
+
+} // namespace toile::body_tracker

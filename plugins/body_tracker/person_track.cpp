@@ -1,0 +1,296 @@
+#include "body_tracker/person_track.h"
+
+#include "body/rotations.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toile::body_tracker {
+namespace {
+
+using body::Joint;
+using body::kJointCount;
+
+constexpr float kUsualStep = 1.0f / 30.0f; // seconds
+constexpr float kKeepsMoving = 0.8f;       // share of the last motion that goes on
+constexpr int kSearchAfter = 2;            // failures in a row
+constexpr float kNobody = 0.45f;           // not explained: what was found is no person
+constexpr float kSurelyNobody = 0.6f;
+constexpr int kFirstSteps = 2;
+constexpr int kTryTurnedEvery = 30; // frames
+constexpr int kTurnedSteps = 6;
+constexpr float kTurnedBetter = 0.85f;
+constexpr std::size_t kFewCells = 40;
+constexpr float kUsualHeight = 1.70f, kShortest = 1.45f, kTallest = 2.05f; // metres
+constexpr float kFullView = 0.30f; // share of a part's skin seen that gives all confidence
+
+struct BoneEnds {
+    Joint from, to;
+    float beyond; ///< how much farther than `to`, in lengths
+    float radius_m;
+};
+constexpr std::array<BoneEnds, 16> kBones{{
+    {Joint::hips, Joint::chest, 0.0f, 0.16f},
+    {Joint::chest, Joint::neck, 0.0f, 0.16f},
+    {Joint::neck, Joint::head, 2.0f, 0.11f},
+    {Joint::left_shoulder, Joint::left_upper_arm, 0.0f, 0.08f},
+    {Joint::left_upper_arm, Joint::left_lower_arm, 0.0f, 0.06f},
+    {Joint::left_lower_arm, Joint::left_hand, 0.6f, 0.05f},
+    {Joint::right_shoulder, Joint::right_upper_arm, 0.0f, 0.08f},
+    {Joint::right_upper_arm, Joint::right_lower_arm, 0.0f, 0.06f},
+    {Joint::right_lower_arm, Joint::right_hand, 0.6f, 0.05f},
+    {Joint::hips, Joint::left_upper_leg, 0.0f, 0.12f},
+    {Joint::left_upper_leg, Joint::left_lower_leg, 0.0f, 0.09f},
+    {Joint::left_lower_leg, Joint::left_foot, 0.0f, 0.07f},
+    {Joint::left_foot, Joint::left_toes, 0.6f, 0.06f},
+    {Joint::right_upper_leg, Joint::right_lower_leg, 0.0f, 0.09f},
+    {Joint::right_lower_leg, Joint::right_foot, 0.0f, 0.07f},
+    {Joint::right_foot, Joint::right_toes, 0.6f, 0.06f},
+}};
+
+/// Radians that a joint may turn within a thirtieth of a second.
+double turn_of(Joint joint) noexcept {
+    switch (joint) {
+    case Joint::left_upper_arm:
+    case Joint::right_upper_arm:
+    case Joint::left_lower_arm:
+    case Joint::right_lower_arm:
+        return 0.35;
+    case Joint::left_upper_leg:
+    case Joint::right_upper_leg:
+    case Joint::left_lower_leg:
+    case Joint::right_lower_leg:
+        return 0.25;
+    case Joint::hips:
+    case Joint::head:
+        return 0.15;
+    default:
+        return 0.08;
+    }
+}
+
+} // namespace
+
+void BoneDistance::set(const body::JointTransforms& joints) noexcept {
+    count_ = 0;
+    low_ = Vec3f::Constant(1e9f);
+    high_ = Vec3f::Constant(-1e9f);
+    for (const BoneEnds& ends : kBones) {
+        Bone& bone = bones_[count_++];
+        bone.from = joints[static_cast<std::size_t>(ends.from)].translation;
+        const Vec3f along = (1.0f + ends.beyond) *
+                            (joints[static_cast<std::size_t>(ends.to)].translation - bone.from);
+        bone.length = along.norm();
+        bone.along = body::unit_or(along, Vec3f::UnitY());
+        bone.radius = ends.radius_m;
+        low_ = low_.cwiseMin(bone.from.cwiseMin(bone.from + along));
+        high_ = high_.cwiseMax(bone.from.cwiseMax(bone.from + along));
+    }
+}
+
+float BoneDistance::operator()(const Vec3f& point) const noexcept {
+    const Vec3f outside = (low_ - point).cwiseMax(point - high_).cwiseMax(0.0f);
+    if (outside.norm() > 0.6f) return outside.norm();
+    float best = 1e9f;
+    for (std::size_t k = 0; k < count_; ++k) {
+        const Bone& bone = bones_[k];
+        const Vec3f off = point - bone.from;
+        const float at = std::clamp(off.dot(bone.along), 0.0f, bone.length);
+        best = std::min(best, (off - at * bone.along).norm() - bone.radius);
+    }
+    return best;
+}
+
+PersonTrack::PersonTrack(const body::FitModel& model, const GridCamera& camera,
+                         const TrackOptions& options)
+    : options_(options), body_(model), registration_(body_, camera), search_(body_),
+      smoother_(options.smoothing), mask_(camera) {
+    const body::FitLevel& level = body_.level();
+    for (const Triangle& t : level.triangles) {
+        std::array<float, kJointCount> weight{};
+        for (const std::uint32_t v : t)
+            for (std::size_t k = 0; k < 4; ++k)
+                weight[level.skin.joints[v][k]] += level.skin.weights[v][k];
+        const auto joint = std::max_element(weight.begin(), weight.end()) - weight.begin();
+        leader_.push_back(static_cast<std::uint8_t>(joint));
+        part_area_[static_cast<std::size_t>(joint)] +=
+            0.5f *
+            (level.mean[t[1]] - level.mean[t[0]]).cross(level.mean[t[2]] - level.mean[t[0]]).norm();
+    }
+}
+
+bool PersonTrack::failed() const noexcept {
+    return agreement_.error_m > options_.failed_error_m ||
+           agreement_.unexplained > options_.failed_share;
+}
+
+bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& up) noexcept {
+    search_.restart();
+    learner_.reset();
+    const float height = PoseSearch::height_of(seen, up).value_or(kUsualHeight);
+    // Whoever bends or sits is taller than that.
+    body_.set_stature(std::clamp(height, kShortest, kTallest));
+    (void)search_.advance(seen, up, nullptr, registration_);
+    pose_ = search_.provisional();
+    for (int step = 0; step < kFirstSteps; ++step)
+        (void)registration_.step(seen, options_.registration, nullptr, pose_);
+    agreement_ = registration_.judge(seen, pose_);
+    if (agreement_.unexplained > kSurelyNobody) return false;
+    id_ = id;
+    ++shape_version_;
+    last_ = pose_;
+    moving_ = sure_ = false;
+    recovering_ = true;
+    failures_ = since_turned_ = 0;
+    unseen_s_ = 0.0f;
+    smoother_.reset();
+    settle(seen, 0.0f);
+    following_ = Following::detected;
+    return true;
+}
+
+/// The other facing fits nearly as well now and then; when it fits better it is right.
+void PersonTrack::try_turned(const SeenPerson& seen) noexcept {
+    if (++since_turned_ < kTryTurnedEvery || failed()) return;
+    since_turned_ = 0;
+    body::Pose pose = PoseSearch::turned_around(pose_);
+    for (int step = 0; step < kTurnedSteps; ++step)
+        (void)registration_.step(seen, options_.registration, nullptr, pose);
+    const Agreement turned = registration_.judge(seen, pose);
+    if (turned.badness() < kTurnedBetter * agreement_.badness()) {
+        pose_ = pose;
+        moving_ = false;
+    }
+    agreement_ = registration_.judge(seen, pose_);
+}
+
+void PersonTrack::predict(float dt) noexcept {
+    motion_.pose = pose_;
+    if (moving_ && dt > 0.0f) {
+        motion_.pose.hips_position += kKeepsMoving * (pose_.hips_position - last_.hips_position);
+        for (std::size_t j = 0; j < kJointCount; ++j) {
+            const Vec3f turned =
+                body::rotation_vector(pose_.rotations[j] * last_.rotations[j].conjugate());
+            motion_.pose.rotations[j] =
+                (body::from_rotation_vector(kKeepsMoving * turned) * pose_.rotations[j])
+                    .normalized();
+        }
+    }
+    const double steps = std::sqrt(std::clamp(static_cast<double>(dt / kUsualStep), 0.5, 6.0));
+    motion_.place_m = 0.04 * steps;
+    for (std::size_t j = 0; j < kJointCount; ++j)
+        motion_.turn[j] = turn_of(static_cast<Joint>(j)) * steps;
+    bones_.set(body::forward_kinematics(body_.skeleton(), motion_.pose));
+}
+
+/// Searches in frame after frame while the pose so far is followed on.
+void PersonTrack::recover(const SeenPerson& seen, const Vec3f& up) noexcept {
+    if (!recovering_) search_.restart();
+    recovering_ = true;
+    const auto found = search_.advance(seen, up, sure_ ? &pose_ : nullptr, registration_);
+    if (found) {
+        if (found->agreement.badness() < agreement_.badness()) {
+            pose_ = found->pose;
+            moving_ = false;
+            if (!sure_) smoother_.reset();
+        }
+        recovering_ = false;
+        failures_ = 0;
+    }
+    agreement_ = registration_.judge(seen, pose_);
+    if (!found || sure_) return;
+    sure_ = true;
+    if (agreement_.unexplained > kNobody) stop();
+}
+
+void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noexcept {
+    if (seen.mask.count < kFewCells) {
+        unseen_s_ += dt;
+        following_ = Following::lost;
+        confidence_.fill(0.0f);
+        moving_ = false;
+        return;
+    }
+    unseen_s_ = 0.0f;
+    const body::Pose before = pose_;
+    body::Pose pose = motion_.pose;
+    for (int step = 0; step < options_.steps; ++step)
+        if (registration_.step(seen, options_.registration, &motion_, pose) < options_.settled_rad)
+            break;
+    pose_ = pose;
+    last_ = before;
+    moving_ = true;
+    agreement_ = registration_.judge(seen, pose_);
+    failures_ = failed() ? failures_ + 1 : 0;
+    if (!sure_ || (options_.recover && failures_ >= kSearchAfter)) {
+        recover(seen, up);
+    } else {
+        recovering_ = false;
+        try_turned(seen);
+    }
+    if (!active()) return;
+    settle(seen, dt);
+}
+
+/// What follows from the frame's pose.
+void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
+    following_ = failed() ? Following::uncertain
+                 : !sure_ ? Following::detected
+                          : Following::tracked;
+    if (options_.learn_shape && sure_ && !learner_.done() && !failed()) {
+        learner_.add(registration_, seen, options_.registration, body_.shape());
+        if (learner_.due()) {
+            body::ShapeVector shape = body_.shape();
+            learner_.solve(shape);
+            body_.set_shape(shape);
+            ++shape_version_;
+            agreement_ = registration_.judge(seen, pose_);
+        }
+    }
+    rate_joints(seen);
+    show(dt);
+}
+
+/// Smooths the pose; `dt` 0: the first frame.
+void PersonTrack::show(float dt) noexcept {
+    const body::JointTransforms before = joints_;
+    joints_ = body::forward_kinematics(body_.skeleton(), smoother_.update(pose_, dt));
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+        if (dt <= 0.0f) {
+            velocity_[j].setZero();
+            turning_[j].setZero();
+            continue;
+        }
+        velocity_[j] = (joints_[j].translation - before[j].translation) / dt;
+        turning_[j] =
+            body::rotation_vector(joints_[j].rotation * before[j].rotation.conjugate()) / dt;
+    }
+    bones_.set(joints_);
+}
+
+/// How much of each part is seen where the body has it.
+void PersonTrack::rate_joints(const SeenPerson& seen) noexcept {
+    std::array<float, kJointCount> area{};
+    const Drawing& drawing = registration_.drawing();
+    const PosedBody& posed = registration_.posed();
+    for (std::size_t i = 0; i < drawing.cells.size(); ++i) {
+        const DrawnCell& cell = drawing.cells[i];
+        if (cell.depth == 0.0f || seen.mask.cells[i] == 0 ||
+            std::abs(cell.depth - seen.grid.depth[i]) > options_.failed_error_m)
+            continue;
+        const auto t = static_cast<std::size_t>(cell.triangle);
+        const Vec3f& p = posed.positions[body_.level().triangles[t][0]];
+        const float facing = -posed.normals[body_.level().triangles[t][0]].dot(p) / p.norm();
+        const float width = seen.grid.camera.footprint(cell.depth);
+        area[leader_[t]] += width * width / std::max(0.3f, facing);
+    }
+    const float trust =
+        1.0f - std::min(1.0f, agreement_.unexplained / (2.0f * options_.failed_share));
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+        const float full = kFullView * part_area_[j];
+        const float share = full > 0.0f ? std::min(1.0f, area[j] / full) : 0.0f;
+        confidence_[j] = share * (0.5f + 0.5f * trust);
+    }
+}
+
+} // namespace toile::body_tracker
