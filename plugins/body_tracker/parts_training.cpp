@@ -96,8 +96,8 @@ std::optional<Forest> train_parts(const body::BodySpace& space, std::vector<body
     TrainingSet set;
     for (int begin = 0; begin < options.frames; begin += kFramesAtOnce) {
         const double done = kFramesShare * begin / options.frames;
-        if (!progress(done, "frame " + std::to_string(begin) + " of " +
-                                std::to_string(options.frames)))
+        if (!progress(done,
+                      "frame " + std::to_string(begin) + " of " + std::to_string(options.frames)))
             return std::nullopt;
         add_frames(maker, static_cast<std::uint32_t>(begin),
                    std::min(kFramesAtOnce, options.frames - begin), options.pixels, rows, set);
@@ -108,9 +108,8 @@ std::optional<Forest> train_parts(const body::BodySpace& space, std::vector<body
         return progress(kFramesShare + (1.0 - kFramesShare) * done, text);
     });
     if (!forest) return std::nullopt;
-    const auto push_back =
-        learn_push_back(*forest, maker, static_cast<std::uint32_t>(options.frames),
-                        options.push_back_frames);
+    const auto push_back = learn_push_back(
+        *forest, maker, static_cast<std::uint32_t>(options.frames), options.push_back_frames);
     for (const float metres : push_back)
         forest->push_back_mm.push_back(static_cast<std::int16_t>(std::lround(1000.0f * metres)));
     return forest;
