@@ -4,6 +4,7 @@
 #include "apps/global_options.h"
 
 #include <CLI/CLI.hpp>
+#include <span>
 
 namespace toile::apps {
 
@@ -18,6 +19,12 @@ void add_record_commands(CLI::App& app, const GlobalOptions& options);
 void add_track_commands(CLI::App& app, const GlobalOptions& options);
 void add_fit_commands(CLI::App& app, const GlobalOptions& options);
 void add_measure_commands(CLI::App& app, const GlobalOptions& options);
+
+/// The subcommands that plugins add (toile.tool/1), in their groups; after all others. A manifest
+/// whose words are taken is passed over with a warning. `words` are the program's arguments, looked
+/// through for --plugins.
+void add_tool_commands(CLI::App& app, const GlobalOptions& options,
+                       std::span<const char* const> words);
 
 /// toile garment list | check | new | pack
 void add_garment_commands(CLI::App& app, const GlobalOptions& options);

@@ -23,20 +23,9 @@ void resizer_refuses(const PluginPtr& plugin) {
     });
 }
 
-void tool_describes(const PluginPtr& plugin) {
-    Bench bench(plugin);
-    bench.activate();
-    auto info = sized<toile_tool_info>();
-    bench.ok("describe", [&](auto* i) { return bench.table<toile_tool>().describe(i, &info); });
-    bench.rule(info.command != nullptr && info.command[0] != '\0' && info.summary != nullptr &&
-                   info.example != nullptr,
-               "describe: no command, summary or example");
-}
-
 constexpr ContractCase kCases[] = {
     {TOILE_SCANNER, "scanner: wrong calls are refused with a text", &scanner_refuses},
     {TOILE_RESIZER, "resizer: wrong calls are refused with a text", &resizer_refuses},
-    {TOILE_TOOL, "tool: describes its command", &tool_describes},
 };
 
 } // namespace

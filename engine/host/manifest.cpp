@@ -82,6 +82,45 @@ void check_kinds(const JsonObject& root, const Manifest& out) {
         if (!is_id(scheme)) throw root.error("schemes", "'" + scheme + "' is no URI scheme");
 }
 
+// One to three words of a-z and -, joined by single blanks.
+bool is_command(const std::string& text) {
+    bool word = false;
+    int words = 1;
+    for (const char c : text) {
+        if (c == ' ') {
+            if (!word) return false;
+            word = false;
+            ++words;
+        } else if ((c >= 'a' && c <= 'z') || (c == '-' && word)) {
+            word = true;
+        } else {
+            return false;
+        }
+    }
+    return word && words <= 3 && text.size() <= 64;
+}
+
+// The help lists a tool without opening its library.
+void read_command(JsonObject& root, Manifest& out) {
+    const bool tool = out.provides_kind(TOILE_TOOL);
+    if (!root.has("command")) {
+        if (tool)
+            throw root.error("command",
+                             std::string("must tell the words of what provides ") + TOILE_TOOL);
+        return;
+    }
+    if (!tool)
+        throw root.error("command", std::string("is for plugins that provide ") + TOILE_TOOL);
+    JsonObject command = root.object("command");
+    out.command = command.text("words");
+    if (!is_command(out.command))
+        throw command.error("words", "'" + out.command +
+                                         "' must be one to three words of a-z and -, joined by "
+                                         "single blanks");
+    out.command_summary = command.text("summary");
+    command.finish();
+}
+
 void read_values(JsonObject& root, Manifest& out) {
     out.id = root.text("id");
     if (!is_id(out.id))
@@ -103,6 +142,7 @@ void read_values(JsonObject& root, Manifest& out) {
     out.priority = static_cast<int>(root.integer_or("priority", -100, 100, 0));
     out.licence = root.text_or("licence", "");
     check_kinds(root, out);
+    read_command(root, out);
 }
 
 // The text of a JsonError without the file in front, which PluginRefused adds again.
@@ -136,8 +176,9 @@ Manifest read_manifest(const std::filesystem::path& file) {
         read_abi(root, out);
         // A misspelt key is told before the missing one that it was meant to be.
         for (const std::string& key : root.keys()) {
-            constexpr const char* known[] = {"id",    "version", "abi",      "library", "provides",
-                                             "needs", "schemes", "priority", "licence", "sample"};
+            constexpr const char* known[] = {"id",       "version", "abi",     "library",
+                                             "provides", "needs",   "schemes", "priority",
+                                             "licence",  "sample",  "command"};
             if (std::none_of(std::begin(known), std::end(known),
                              [&](const char* k) { return key == k; }))
                 throw PluginRefused(Refusal::manifest_unknown_key, name,

@@ -1,11 +1,14 @@
-// Kind toile.body_source/1, fed with the depth frames of one camera.
+// Kind toile.body_source/1, fed with the depth frames of one camera, and toile.tool/1, which trains
+// the forest of body parts.
 #include "body/avatar_files.h"
 #include "body_tracker/body_tracking.h"
+#include "body_tracker/parts_tool.h"
 #include "body_tracker/tracked_shape.h"
 #include "core/error.h"
 #include "sdk/body_source.h"
 #include "sdk/parameters.h"
 #include "sdk/plugin.h"
+#include "sdk/thread_pool.h"
 #include "sdk/views.h"
 
 namespace {
@@ -24,7 +27,7 @@ class BodyTracker {
                                     .name = "People tracked in depth frames",
                                     .version = "0.1.0",
                                     .vendor = "Toile"};
-    using Kinds = sdk::Kinds<sdk::BodySource>;
+    using Kinds = sdk::Kinds<sdk::BodySource, sdk::Tool>;
     using Extensions = sdk::Kinds<sdk::Parameters>;
     static constexpr std::array parameters{
         sdk::Parameter{"smoothing", TOILE_PARAMETER_SWITCH, "1",
@@ -37,6 +40,19 @@ class BodyTracker {
     explicit BodyTracker(sdk::Host host) : host_(host) {}
 
     double& parameter(std::size_t index) { return switches_[index]; }
+
+    void activate(const toile_limits& limits) { seed_ = limits.random_seed; }
+
+    toile_tool_info describe_tool() { return tracker::parts_tool_info(); }
+
+    void run_tool(const sdk::ToolArguments& arguments, sdk::Job job) {
+        const sdk::ThreadPool pool(host_);
+        host_.info(tracker::train_parts_by(
+            arguments,
+            {seed_, [&](std::uint32_t count, std::uint32_t grain,
+                        const auto& body) { pool.parallel_for(count, grain, body); }},
+            job));
+    }
 
     toile_body_source_info describe() {
         return {sizeof(toile_body_source_info), TOILE_SOURCE_FRAMES, nullptr};
@@ -192,6 +208,7 @@ class BodyTracker {
     toile_stream stream_{};
     RigidTransform world_; ///< world_from_camera
     body::Skeleton given_;
+    std::uint64_t seed_ = 1;
     std::uint64_t given_revision_ = 0; ///< 0: the body is found
     std::uint64_t revision_ = 0;
     std::uint32_t sequence_ = 0;

@@ -1,27 +1,12 @@
 #include "body_tracker/forest.h"
 
+#include "body_tracker/depth_probe.h"
+
 #include <algorithm>
 #include <array>
 
 namespace toile::body_tracker {
 namespace {
-
-/// Pixels a millimetre at a pixel's depth, 16 binary places.
-std::int64_t pixel_scale(const DepthView& view, int depth_mm) {
-    return static_cast<std::int64_t>(view.focal_px * 65536.0f) / depth_mm;
-}
-
-int probe(const DepthView& view, int x, int y, std::int64_t scale, int dx_mm, int dy_mm) {
-    const std::int64_t px = x + ((dx_mm * scale + 32768) >> 16);
-    const std::int64_t py = y + ((dy_mm * scale + 32768) >> 16);
-    if (px < 0 || py < 0 || px >= view.width || py >= view.height) return kFar_mm;
-    const int depth = view.mm[py * view.width + px];
-    return depth == 0 ? kFar_mm : depth;
-}
-
-int difference(const DepthFeature& f, const DepthView& view, int x, int y, std::int64_t scale) {
-    return probe(view, x, y, scale, f.ax, f.ay) - probe(view, x, y, scale, f.bx, f.by);
-}
 
 const std::uint8_t* find_leaf(const ForestTree& tree, int class_count, const DepthView& view, int x,
                               int y, std::int64_t scale) {

@@ -51,6 +51,9 @@ struct ForestTree {
 
 struct Forest {
     int class_count = 0;
+    /// Learned with it, (classes) or empty: from the middle of a class's surface into the body,
+    /// millimetres along the ray.
+    std::vector<std::int16_t> push_back_mm;
     std::vector<ForestTree> trees;
 };
 

@@ -91,6 +91,9 @@ std::vector<std::uint8_t> encode_forest(const Forest& forest) {
         append(out, tree.nodes.data(), tree.nodes.size());
         append(out, tree.leaves.data(), tree.leaves.size());
     }
+    auto push_back = forest.push_back_mm;
+    push_back.resize(static_cast<std::size_t>(forest.class_count));
+    append(out, push_back.data(), push_back.size());
     const std::uint64_t sum = checksum(out);
     append(out, &sum, 1);
     return out;
@@ -114,7 +117,8 @@ Forest decode_forest(std::span<const std::uint8_t> bytes, const std::string& nam
     forest.class_count = static_cast<int>(head[0]);
     for (std::uint32_t t = 0; t < head[1]; ++t)
         forest.trees.push_back(take_tree(reader, head[0], allow_growing));
-    if (!reader.empty()) reader.fail("has bytes behind its last tree");
+    forest.push_back_mm = reader.take<std::int16_t>(head[0]);
+    if (!reader.empty()) reader.fail("has bytes behind its end");
     return forest;
 }
 

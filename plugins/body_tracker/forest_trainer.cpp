@@ -1,5 +1,6 @@
 #include "body_tracker/forest_trainer.h"
 
+#include "body_tracker/split_search.h"
 #include "core/bytes.h"
 #include "core/random.h"
 
@@ -11,26 +12,9 @@ namespace toile::body_tracker {
 namespace {
 
 using Sample = TrainingSet::Sample;
-using Counts = std::array<std::uint32_t, kMaxClasses>;
 
-constexpr std::uint32_t kBatch = 256; ///< nodes whose candidates are kept at once
+constexpr std::size_t kBatch = 256; ///< nodes between two questions whether to go on
 constexpr std::size_t kMaxCheckpointBytes = 512u << 20;
-
-/// One question and how much purer it leaves the samples; gain 0 = none.
-struct Split {
-    double gain = 0.0;
-    int threshold = 0;
-};
-
-/// Sum over classes of n_c^2 / n: the larger, the purer.
-double purity(const Counts& counts) {
-    double squares = 0.0, total = 0.0;
-    for (const std::uint32_t n : counts) {
-        squares += static_cast<double>(n) * n;
-        total += n;
-    }
-    return total > 0.0 ? squares / total : 0.0;
-}
 
 /// Samples of the nodes of one level, each node's together and in their order.
 struct Level {
@@ -53,7 +37,8 @@ std::uint64_t fingerprint(const TrainingSet& set, const TrainerOptions& o) {
     for (const int value :
          {o.class_count, o.tree_count, o.depth, o.candidates, o.thresholds, o.reach_mm})
         sum = fold(sum, static_cast<std::uint64_t>(value));
-    sum = fold(fold(sum, o.min_samples), o.split_samples);
+    sum = fold(fold(fold(sum, o.min_samples), o.split_samples), o.max_leaves);
+    sum = fold(sum, static_cast<std::uint64_t>(o.balance * 1e6));
     for (const Sample& s : set.samples())
         sum = fold(sum, (std::uint64_t{s.frame} << 32 | std::uint64_t{s.x} << 16 | s.y) ^
                             std::uint64_t{s.label} << 56);
@@ -74,7 +59,10 @@ void check(const TrainingSet& set, const TrainerOptions& o) {
     if (o.class_count < 1 || o.class_count > kMaxClasses) refuse("class_count must be 1 to 32");
     if (o.tree_count < 1 || o.tree_count > kMaxTrees) refuse("tree_count must be 1 to 16");
     if (o.depth < 1 || o.depth > 30) refuse("depth must be 1 to 30");
-    if (o.candidates < 1 || o.thresholds < 1) refuse("candidates and thresholds must be 1 or more");
+    if (o.candidates < 1) refuse("candidates must be 1 or more");
+    if (o.thresholds < 1 || o.thresholds > 31) refuse("thresholds must be 1 to 31");
+    if (!(o.balance >= 0.0 && o.balance <= 1.0)) refuse("balance must be 0 to 1");
+    if (o.max_leaves < 2) refuse("max_leaves must be 2 or more");
     if (o.reach_mm < 1 || o.reach_mm > 4000) refuse("reach_mm must be 1 to 4000");
     if (o.min_samples < 2 || o.split_samples < 2)
         refuse("min_samples and split_samples must be 2 or more");
@@ -88,7 +76,8 @@ void check(const TrainingSet& set, const TrainerOptions& o) {
 class Trainer {
   public:
     Trainer(const TrainingSet& set, const TrainerOptions& options, const RowLoop& rows)
-        : set_(set), options_(options), rows_(rows), fingerprint_(fingerprint(set, options)) {
+        : set_(set), options_(options), rows_(rows), search_(set, options),
+          fingerprint_(fingerprint(set, options)) {
         forest_.class_count = options.class_count;
         load_checkpoint();
     }
@@ -100,14 +89,8 @@ class Trainer {
                 forest_.trees.emplace_back().nodes.resize(1);
                 level_ = 0;
             }
-            for (Level level = find_level(); !level.nodes.empty(); level = find_level()) {
-                const double done =
-                    (t + static_cast<double>(level_) / (options_.depth + 1)) / options_.tree_count;
-                if (!progress(done, "tree " + std::to_string(t + 1) + ", level " +
-                                        std::to_string(level_) + ": " +
-                                        std::to_string(level.nodes.size()) + " nodes"))
-                    return std::nullopt;
-                grow(level);
+            for (Level level = find_level(); !level.nodes.empty(); level = descend(level)) {
+                if (!grow(level, progress)) return std::nullopt;
                 ++level_;
                 save_checkpoint();
             }
@@ -118,17 +101,18 @@ class Trainer {
   private:
     [[nodiscard]] ForestTree& tree() { return forest_.trees.back(); }
     [[nodiscard]] const Sample& sample(std::uint32_t index) const { return set_.samples()[index]; }
+    [[nodiscard]] bool goes_on(std::uint32_t index, const ForestNode& node) const {
+        const Sample& s = sample(index);
+        return feature_value(node.feature, set_.frame(s.frame), s.x, s.y) >= node.threshold;
+    }
 
     /// Node that a sample has come to; -1 in a leaf.
     [[nodiscard]] std::int64_t arrive(std::uint32_t index) const {
-        const Sample& s = sample(index);
-        const DepthView view = set_.frame(s.frame);
         const auto& nodes = forest_.trees.back().nodes;
         std::int32_t at = 0;
         while (nodes[static_cast<std::size_t>(at)].child > 0) {
             const ForestNode& node = nodes[static_cast<std::size_t>(at)];
-            at =
-                node.child + (feature_value(node.feature, view, s.x, s.y) < node.threshold ? 0 : 1);
+            at = node.child + (goes_on(index, node) ? 1 : 0);
         }
         return nodes[static_cast<std::size_t>(at)].child < 0 ? -1 : at;
     }
@@ -160,116 +144,120 @@ class Trainer {
         return level;
     }
 
-    [[nodiscard]] Counts count(std::span<const std::uint32_t> samples) const {
-        Counts counts{};
-        for (const std::uint32_t index : samples)
-            ++counts[sample(index).label];
-        return counts;
-    }
-
-    /// The candidate's feature; the same whoever asks.
-    [[nodiscard]] DepthFeature draw(std::uint32_t node, int candidate) const {
-        Random random(fold(fold(fold(options_.seed, forest_.trees.size()), node),
-                           static_cast<std::uint64_t>(candidate)));
-        // Cubes: near places are asked more often than far ones.
-        const auto offset = [&] {
-            const double u = random.uniform(-1.0, 1.0);
-            return static_cast<std::int16_t>(u * u * u * options_.reach_mm);
-        };
-        DepthFeature feature;
-        feature.ax = offset();
-        feature.ay = offset();
-        if (random.next() % 2 == 0) return feature;
-        feature.bx = offset();
-        feature.by = offset();
-        return feature;
-    }
-
-    /// Best threshold of one feature for a node's samples.
-    [[nodiscard]] Split try_feature(const DepthFeature& feature,
-                                    std::span<const std::uint32_t> samples) const {
-        const std::size_t used = std::min<std::size_t>(samples.size(), options_.split_samples);
-        std::vector<std::pair<int, std::uint32_t>> values(used); // feature, class
-        for (std::size_t i = 0; i < used; ++i) {
-            const Sample& s = sample(samples[i * samples.size() / used]);
-            values[i] = {
-                std::clamp(feature_value(feature, set_.frame(s.frame), s.x, s.y), -32767, 32767),
-                s.label};
-        }
-        std::sort(values.begin(), values.end());
-        return best_threshold(values);
-    }
-
-    [[nodiscard]] Split
-    best_threshold(const std::vector<std::pair<int, std::uint32_t>>& values) const {
-        Counts below{}, above{};
-        for (const auto& value : values)
-            ++above[value.second];
-        const double before = purity(above);
-        Split best;
-        std::size_t at = 0;
-        for (int t = 1; t <= options_.thresholds; ++t) {
-            const int threshold = values[values.size() * static_cast<std::size_t>(t) /
-                                         (static_cast<std::size_t>(options_.thresholds) + 1)]
-                                      .first;
-            for (; at < values.size() && values[at].first < threshold; ++at) {
-                ++below[values[at].second];
-                --above[values[at].second];
-            }
-            if (at == 0) continue;
-            const double gain = purity(below) + purity(above) - before;
-            if (gain > best.gain * (1.0 + 1e-12)) best = {gain, threshold};
-        }
-        return best;
-    }
-
-    void grow(const Level& level) {
-        for (std::size_t begin = 0; begin < level.nodes.size(); begin += kBatch)
-            grow_batch(level, begin, std::min<std::size_t>(begin + kBatch, level.nodes.size()));
-    }
-
-    void grow_batch(const Level& level, std::size_t begin, std::size_t end) {
-        const auto candidates = static_cast<std::uint32_t>(options_.candidates);
-        std::vector<Split> splits((end - begin) * candidates);
-        rows_(static_cast<std::uint32_t>(splits.size()), 16,
-              [&](std::uint32_t from, std::uint32_t to) {
-                  for (std::uint32_t i = from; i < to; ++i) {
-                      const std::size_t n = begin + i / candidates;
-                      if (!may_split(level.samples(n))) continue;
-                      const auto candidate = static_cast<int>(i % candidates);
-                      splits[i] = try_feature(draw(level.nodes[n], candidate), level.samples(n));
+    /// The next level: what find_level gives, without the walk from the root.
+    [[nodiscard]] Level descend(const Level& level) {
+        const auto& nodes = tree().nodes;
+        std::vector<std::uint8_t> sides(level.order.size());
+        rows_(static_cast<std::uint32_t>(level.nodes.size()), 16,
+              [&](std::uint32_t begin, std::uint32_t end) {
+                  for (std::size_t n = begin; n < end; ++n) {
+                      if (nodes[level.nodes[n]].child < 0) continue;
+                      for (std::size_t i = level.first[n]; i < level.first[n + 1]; ++i)
+                          sides[i] = goes_on(level.order[i], nodes[level.nodes[n]]) ? 1 : 0;
                   }
               });
-        for (std::size_t n = begin; n < end; ++n) {
-            const auto mine = std::span(splits).subspan((n - begin) * candidates, candidates);
-            const auto best =
-                std::max_element(mine.begin(), mine.end(),
-                                 [](const Split& a, const Split& b) { return a.gain < b.gain; });
-            finish(level.nodes[n], level.samples(n), *best, static_cast<int>(best - mine.begin()));
+        Level next;
+        next.first.push_back(0);
+        for (std::size_t n = 0; n < level.nodes.size(); ++n) {
+            const std::int32_t child = nodes[level.nodes[n]].child;
+            if (child < 0) continue;
+            for (std::uint8_t side = 0; side < 2; ++side) {
+                next.nodes.push_back(static_cast<std::uint32_t>(child) + side);
+                for (std::size_t i = level.first[n]; i < level.first[n + 1]; ++i)
+                    if (sides[i] == side) next.order.push_back(level.order[i]);
+                next.first.push_back(next.order.size());
+            }
         }
+        return next;
+    }
+
+    /// False when told to stop; the tree is as before then.
+    [[nodiscard]] bool grow(const Level& level, const TrainerProgress& progress) {
+        std::vector<Split> splits(level.nodes.size());
+        for (std::size_t begin = 0; begin < splits.size(); begin += kBatch) {
+            const double in_level = static_cast<double>(begin) / static_cast<double>(splits.size());
+            const double in_tree = (level_ + in_level) / (options_.depth + 1);
+            const auto number = forest_.trees.size();
+            if (!progress((static_cast<double>(number - 1) + in_tree) / options_.tree_count,
+                          "tree " + std::to_string(number) + ", level " + std::to_string(level_) +
+                              ": " + std::to_string(level.nodes.size()) + " nodes"))
+                return false;
+            find_splits(level, begin, std::min(begin + kBatch, splits.size()), splits);
+        }
+        keep_best(splits);
+        for (std::size_t n = 0; n < splits.size(); ++n)
+            finish(level.nodes[n], level.samples(n), splits[n]);
+        return true;
+    }
+
+    void find_splits(const Level& level, std::size_t begin, std::size_t end,
+                     std::vector<Split>& splits) const {
+        const auto blocks = static_cast<std::size_t>(
+            (options_.candidates + SplitSearch::kBlock - 1) / SplitSearch::kBlock);
+        std::vector<Split> found((end - begin) * blocks);
+        rows_(static_cast<std::uint32_t>(found.size()), 4,
+              [&](std::uint32_t from, std::uint32_t to) {
+                  SplitSearch::Scratch scratch;
+                  for (std::size_t i = from; i < to; ++i) {
+                      const std::size_t n = begin + i / blocks;
+                      const auto first = static_cast<int>(i % blocks) * SplitSearch::kBlock;
+                      if (may_split(level.samples(n)))
+                          found[i] = search_.best(forest_.trees.size(), level.nodes[n],
+                                                  level.samples(n), first, scratch);
+                  }
+              });
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (Split& best = splits[begin + i / blocks]; found[i].gain > best.gain)
+                best = found[i];
     }
 
     [[nodiscard]] bool may_split(std::span<const std::uint32_t> samples) const {
         return level_ < options_.depth && samples.size() >= options_.min_samples;
     }
 
-    /// A question or a leaf. A node without gain ends here: gain needs samples on both sides.
-    void finish(std::uint32_t node, std::span<const std::uint32_t> samples, const Split& split,
-                int candidate) {
+    /// Takes away the splits that gain least, so that the leaves keep within their bound. A level
+    /// may use half of what is left, so that the best branches can grow deep.
+    void keep_best(std::vector<Split>& splits) {
+        const std::size_t leaves =
+            tree().leaves.size() / static_cast<std::size_t>(options_.class_count) + splits.size();
+        const std::size_t left = options_.max_leaves > leaves ? options_.max_leaves - leaves : 0;
+        const std::size_t allowed = level_ + 1 < options_.depth ? (left + 1) / 2 : left;
+        std::vector<std::size_t> order;
+        for (std::size_t n = 0; n < splits.size(); ++n)
+            if (splits[n].gain > 0.0) order.push_back(n);
+        if (order.size() <= allowed) return;
+        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return splits[a].gain != splits[b].gain ? splits[a].gain > splits[b].gain : a < b;
+        });
+        for (const std::size_t n : std::span(order).subspan(allowed))
+            splits[n].gain = 0.0;
+    }
+
+    /// A question or a leaf.
+    void finish(std::uint32_t node, std::span<const std::uint32_t> samples, const Split& split) {
         if (split.gain <= 0.0) {
-            const auto classes = static_cast<std::size_t>(options_.class_count);
-            tree().nodes[node].child = ~static_cast<std::int32_t>(tree().leaves.size() / classes);
-            const Counts counts = count(samples);
-            for (std::size_t c = 0; c < classes; ++c)
-                tree().leaves.push_back(static_cast<std::uint8_t>(
-                    (std::uint64_t{counts[c]} * 510 + samples.size()) / (2 * samples.size())));
+            add_leaf(node, samples);
             return;
         }
         ForestNode& grown = tree().nodes[node];
-        grown.feature = draw(node, candidate);
+        grown.feature = split.feature;
         grown.threshold = static_cast<std::int16_t>(split.threshold);
         grown.child = static_cast<std::int32_t>(tree().nodes.size());
         tree().nodes.resize(tree().nodes.size() + 2);
+    }
+
+    void add_leaf(std::uint32_t node, std::span<const std::uint32_t> samples) {
+        const auto classes = static_cast<std::size_t>(options_.class_count);
+        tree().nodes[node].child = ~static_cast<std::int32_t>(tree().leaves.size() / classes);
+        std::array<std::uint64_t, kMaxClasses> counts{};
+        std::uint64_t all = 0;
+        for (const std::uint32_t index : samples) {
+            const std::uint32_t label = sample(index).label;
+            counts[label] += search_.weights()[label];
+            all += search_.weights()[label];
+        }
+        for (std::size_t c = 0; c < classes; ++c)
+            tree().leaves.push_back(static_cast<std::uint8_t>((counts[c] * 510 + all) / (2 * all)));
     }
 
     void save_checkpoint() const {
@@ -302,41 +290,13 @@ class Trainer {
     const TrainingSet& set_;
     const TrainerOptions& options_;
     const RowLoop& rows_;
+    SplitSearch search_;
     std::uint64_t fingerprint_ = 0;
     Forest forest_; ///< the last tree is growing
     int level_ = 0;
 };
 
 } // namespace
-
-void TrainingSet::add(const DepthView& frame, std::span<const Sample> samples) {
-    const auto refuse = [&](const std::string& what) {
-        throw Error("training frame " + std::to_string(frames_.size()) + ": " + what);
-    };
-    if (frame.width < 1 || frame.height < 1 || frame.width > 65535 || frame.height > 65535 ||
-        frame.mm == nullptr || !(frame.focal_px > 0.0f && frame.focal_px < 32768.0f))
-        refuse("needs a size of 1 to 65535, depths and a focal length of up to 32768 pixels");
-    for (const Sample& s : samples) {
-        const auto place = " at (" + std::to_string(s.x) + ", " + std::to_string(s.y) + ")";
-        if (s.x >= frame.width || s.y >= frame.height)
-            refuse("the sample" + place + " is out of it");
-        if (frame.mm[s.y * frame.width + s.x] == 0)
-            refuse("the sample" + place + " is not of the person");
-    }
-    const auto index = static_cast<std::uint32_t>(frames_.size());
-    frames_.push_back({frame.width, frame.height, frame.focal_px, depths_.size()});
-    depths_.insert(depths_.end(), frame.mm,
-                   frame.mm + static_cast<std::size_t>(frame.width) * frame.height);
-    for (Sample s : samples) {
-        s.frame = index;
-        samples_.push_back(s);
-    }
-}
-
-DepthView TrainingSet::frame(std::uint32_t index) const {
-    const Frame& f = frames_[index];
-    return {f.width, f.height, f.focal_px, depths_.data() + f.first};
-}
 
 std::optional<Forest> train_forest(const TrainingSet& set, const TrainerOptions& options,
                                    const RowLoop& rows, const TrainerProgress& progress) {

@@ -1,7 +1,7 @@
 // Grows a forest on labelled pixels, all nodes of a level together, and can go on where it stopped.
 #pragma once
 
-#include "body_tracker/forest.h"
+#include "body_tracker/training_set.h"
 #include "core/row_loop.h"
 
 #include <functional>
@@ -10,43 +10,19 @@
 
 namespace toile::body_tracker {
 
-/// Training pixels kept small: depths once per frame, a place and a class per pixel.
-class TrainingSet {
-  public:
-    struct Sample {
-        std::uint32_t frame = 0;
-        std::uint16_t x = 0, y = 0;
-        std::uint32_t label = 0; ///< class, from 0
-    };
-
-    /// Copies the frame. Samples are pixels of the person. \throw Error when sizes or a sample do
-    /// not fit; `samples[..].frame` is set here
-    void add(const DepthView& frame, std::span<const Sample> samples);
-
-    [[nodiscard]] std::span<const Sample> samples() const { return samples_; }
-    [[nodiscard]] DepthView frame(std::uint32_t index) const;
-    [[nodiscard]] std::size_t frame_count() const { return frames_.size(); }
-
-  private:
-    struct Frame {
-        int width = 0, height = 0;
-        float focal_px = 0.0f;
-        std::size_t first = 0;
-    };
-    std::vector<Frame> frames_;
-    std::vector<std::uint16_t> depths_;
-    std::vector<Sample> samples_;
-};
-
 struct TrainerOptions {
     int class_count = 0;
     int tree_count = 3;
     int depth = 18;                     ///< levels of questions
-    int candidates = 400;               ///< features tried at a node
-    int thresholds = 20;                ///< tried for each
+    int candidates = 250;               ///< features tried at a node
+    int thresholds = 20;                ///< tried for each, at most 31
     int reach_mm = 1000;                ///< largest offset along an axis
     std::uint32_t min_samples = 20;     ///< a node with fewer becomes a leaf
-    std::uint32_t split_samples = 4000; ///< a question is chosen by at most so many, evenly taken
+    std::uint32_t split_samples = 2500; ///< a question is chosen by at most so many, evenly taken
+    std::uint32_t max_leaves = 60000;   ///< of a tree; a full level keeps the best splits only
+    /// Weight of a class: (mean number of samples / its number) to this power. 0: rare classes are
+    /// ignored, 1: all count the same.
+    double balance = 0.5;
     std::uint64_t seed = 1;
     std::filesystem::path checkpoint; ///< written after each level when not empty
 };

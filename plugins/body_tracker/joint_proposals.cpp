@@ -21,6 +21,14 @@ void keep(const JointProposal& mode, float radius, PartProposals& out) {
 
 } // namespace
 
+ProposalOptions proposal_options(const Forest& forest) {
+    ProposalOptions out;
+    const std::size_t known = std::min(forest.push_back_mm.size(), out.push_back_m.size());
+    for (std::size_t p = 0; p < known; ++p)
+        out.push_back_m[p] = 0.001f * static_cast<float>(forest.push_back_mm[p]);
+    return out;
+}
+
 JointProposer::JointProposer(const ProposalOptions& options)
     : options_(options), parts_(kPartCount) {}
 

@@ -28,6 +28,9 @@ struct ProposalOptions {
     std::array<float, kPartCount> push_back_m{}; ///< from surface to joint, along the ray
 };
 
+/// The usual options with the push-back that the forest has learned (0 where it has none).
+[[nodiscard]] ProposalOptions proposal_options(const Forest& forest);
+
 /// Place of the picture's centre (the focal length is the picture's).
 struct ImageCentre {
     float x_px = 0.0f, y_px = 0.0f;

@@ -1,9 +1,12 @@
 #include "body_tracker/parts_frames.h"
 
-#include "body/joint_limits.h"
 #include "body/motion.h"
 #include "body/skinning.h"
+#include "body_tracker/parts_clothes.h"
+#include "body_tracker/parts_poses.h"
 #include "core/error.h"
+#include "geometry/mesh.h"
+#include "imaging/depth_noise.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -29,27 +32,43 @@ double draw(const std::array<double, 2>& range, Random& random) {
     return random.uniform(range[0], range[1]);
 }
 
-/// Any facing, lowest sole on the floor.
-body::Pose draw_pose(const body::Skeleton& skeleton, Random& random) {
-    body::Pose pose = body::random_pose(skeleton, random);
-    const auto turn = static_cast<float>(random.uniform(0.0, 2.0 * std::numbers::pi));
+/// Any facing or towards the camera, lowest sole on the floor.
+body::Pose stand(const body::Skeleton& skeleton, body::Pose pose, const FrameRange& range,
+                 Random& random) {
+    const double widest = random.uniform() < range.facing_share ? 1.0 / 3.0 : 1.0;
+    const auto turn = static_cast<float>(random.uniform(-1.0, 1.0) * widest * std::numbers::pi);
     pose.rotations[0] = Quatf(Eigen::AngleAxisf(turn, Vec3f::UnitY())) * pose.rotations[0];
+    pose.hips_position = skeleton.rest(body::Joint::hips);
     pose.hips_position.y() -= body::lowest_sole(skeleton, body::forward_kinematics(skeleton, pose));
     return pose;
 }
 
-/// Camera in front of the hips, aimed level but for the tilt and with the hips a little aside.
-Eigen::Isometry3f draw_camera(const Vec3f& hips, const FrameRange& range, Random& random) {
+/// Camera in front of the hips, aimed at them but for the tilt, with them a little aside.
+Eigen::Isometry3f draw_camera(const Vec3f& hips, const FrameRange& range, int width,
+                              Random& random) {
     const double distance = draw(range.distance_m, random);
-    const double half = 0.5 * range.width / range.focal_px;
-    const double aside = random.uniform(-1.0, 1.0) * range.aside_share * half * distance;
+    const double height = draw(range.camera_height_m, random);
+    const double half = 0.5 * width / static_cast<double>(range.focal_px);
+    const double share = random.uniform() < range.cut_share ? 1.0 : range.aside_share;
+    const double aside = random.uniform(-1.0, 1.0) * share * half * distance;
+    const double ahead = std::atan2(static_cast<double>(hips.y()) - height, distance);
     Eigen::Isometry3f world_from_camera = Eigen::Isometry3f::Identity();
-    world_from_camera.translation() = Vec3f(hips.x() + static_cast<float>(aside),
-                                            static_cast<float>(draw(range.camera_height_m, random)),
-                                            hips.z() + static_cast<float>(distance));
-    const auto tilt = static_cast<float>(random.uniform(-1.0, 1.0) * range.tilt_rad);
-    world_from_camera.rotate(Eigen::AngleAxisf(tilt, Vec3f::UnitX()));
+    world_from_camera.translation() =
+        Vec3f(hips.x() + static_cast<float>(aside), static_cast<float>(height),
+              hips.z() + static_cast<float>(distance));
+    const double tilt = ahead + random.uniform(-1.0, 1.0) * range.tilt_rad;
+    world_from_camera.rotate(Eigen::AngleAxisf(static_cast<float>(tilt), Vec3f::UnitX()));
     return world_from_camera.inverse();
+}
+
+/// Sensor noise; labels follow the readings.
+void add_noise(PartsFrame& frame, Random& random) {
+    imaging::DepthNoiseMaker noise({});
+    const std::vector<PartLabel> clean = frame.labels;
+    std::vector<std::uint32_t> source(frame.mm.size());
+    noise.apply(frame.width, frame.height, frame.focal_px, frame.mm, source, random);
+    for (std::size_t i = 0; i < source.size(); ++i)
+        frame.labels[i] = frame.mm[i] != 0 ? clean[source[i]] : PartLabel::invalid;
 }
 
 /// A vertex in the picture: pixels, and 1 / depth, which is linear there.
@@ -94,8 +113,9 @@ void draw_triangle(const std::array<Corner, 3>& c, const std::array<PartLabel, 3
 } // namespace
 
 FrameMaker::FrameMaker(const body::BodySpace& space, int people, std::uint64_t seed,
-                       const FrameRange& range)
-    : range_(range), seed_(seed), triangles_(space.levels().front().triangles) {
+                       const FrameRange& range, std::vector<body::Pose> recorded)
+    : range_(range), seed_(seed), recorded_(std::move(recorded)),
+      triangles_(space.levels().front().triangles) {
     if (people < 1) throw Error("frames of body parts: people must be 1 or more");
     const auto& vertices = space.levels().front().vertices;
     const std::vector<PartLabel> all = label_vertices(space.model());
@@ -108,34 +128,51 @@ FrameMaker::FrameMaker(const body::BodySpace& space, int people, std::uint64_t s
     for (int p = 0; p < people; ++p) {
         const body::Sex sex = body::kSexes[static_cast<std::size_t>(p % 2)];
         const Eigen::VectorXd drawn = draw_shape(space.prior(sex), range.shape_spread, random);
-        body::BodyShape shape = space.shape({drawn.data(), static_cast<std::size_t>(drawn.size())});
-        std::vector<Vec3f> coarse;
+        const body::BodyShape shape =
+            space.shape({drawn.data(), static_cast<std::size_t>(drawn.size())});
+        Person person;
         for (const std::uint32_t v : vertices)
-            coarse.push_back(shape.positions[v]);
-        people_.push_back({std::move(coarse), shape.skeleton});
+            person.shape.positions.push_back(shape.positions[v]);
+        person.shape.skeleton = shape.skeleton;
+        person.normals.resize(vertices.size());
+        geometry::vertex_normals(person.shape.positions, triangles_, person.normals);
+        people_.push_back(std::move(person));
     }
+}
+
+std::vector<Vec3f> FrameMaker::pose(const Person& person, const body::JointTransforms& world,
+                                    Random& random) const {
+    const body::Skeleton& skeleton = person.shape.skeleton;
+    std::vector<Vec3f> dressed = person.shape.positions;
+    if (range_.clothes)
+        dress(draw_outfit(random), skeleton, person.normals, labels_, std::span(dressed));
+    const body::SkinnedSurface surface(dressed, {}, skin_.joints, skin_.weights);
+    std::vector<Vec3f> points(dressed.size());
+    surface.pose(body::skinning_transforms(skeleton, world), body::SkinningMethod::dual_quaternion,
+                 body::VectorRows(std::span(points)), {});
+    return points;
 }
 
 PartsFrame FrameMaker::make(std::uint32_t index) const {
     Random random(Random(seed_ ^ (std::uint64_t{index} << 20)).next());
-    const body::BodyShape& person = people_[random.next() % people_.size()];
-    const body::Pose pose = draw_pose(person.skeleton, random);
-    const auto world = body::forward_kinematics(person.skeleton, pose);
-    const body::SkinnedSurface surface(person.positions, {}, skin_.joints, skin_.weights);
-    std::vector<Vec3f> points(person.positions.size());
-    surface.pose(body::skinning_transforms(person.skeleton, world),
-                 body::SkinningMethod::dual_quaternion, body::VectorRows(std::span(points)), {});
+    const Person& person = people_[random.next() % people_.size()];
+    const body::Skeleton& skeleton = person.shape.skeleton;
+    const body::Pose pose = stand(skeleton, draw_pose(skeleton, recorded_, random), range_, random);
+    const auto world = body::forward_kinematics(skeleton, pose);
+    std::vector<Vec3f> points = this->pose(person, world, random);
 
-    const Eigen::Isometry3f camera = draw_camera(pose.hips_position, range_, random);
-    for (Vec3f& point : points)
-        point = camera * point;
     PartsFrame frame;
     frame.width = range_.width;
     frame.height = range_.height;
     frame.focal_px = range_.focal_px;
+    if (random.uniform() < range_.upright_share) std::swap(frame.width, frame.height);
+    const Eigen::Isometry3f camera = draw_camera(pose.hips_position, range_, frame.width, random);
+    for (Vec3f& point : points)
+        point = camera * point;
     for (std::size_t j = 0; j < body::kJointCount; ++j)
         frame.joints[j] = camera * world[j].translation;
     draw_parts(points, triangles_, labels_, frame);
+    if (range_.noise) add_noise(frame, random);
     return frame;
 }
 

@@ -15,14 +15,18 @@ namespace toile::body_tracker {
 struct FrameRange {
     int width = 160, height = 120;
     float focal_px = 145.0f;
+    double upright_share = 0.25; ///< of frames by a camera on its side: width and height exchanged
     std::array<double, 2> camera_height_m = {0.5, 2.2};
     std::array<double, 2> distance_m = {1.5, 4.0};
-    double tilt_rad = 0.26;    ///< up to so much, up or down
-    double aside_share = 0.2;  ///< the person's place off the axis, in half widths of the view
+    double tilt_rad = 0.18;    ///< aims up to so much above or below the hips
+    double aside_share = 0.25; ///< the person's place off the axis, in half widths of the view
+    double cut_share = 0.15;   ///< of frames with the person up to the picture's edge
+    double facing_share = 0.5; ///< of frames where people face the camera, up to 60 degrees off
     double shape_spread = 1.3; ///< of the population's deviation
+    bool clothes = true;       ///< clothes and hair
+    bool noise = true;         ///< of a Kinect v1: imaging/depth_noise.h
 };
 
-/// Clean depths: no sensor noise, no clothes.
 struct PartsFrame {
     int width = 0, height = 0;
     float focal_px = 0.0f;
@@ -35,16 +39,25 @@ struct PartsFrame {
 /// run side by side.
 class FrameMaker {
   public:
-    /// Draws `people` shapes from both sexes' populations. \throw Error for no people
+    /// Draws `people` shapes from both sexes' populations; `recorded` poses are those of read_poses
+    /// or none. \throw Error for no people
     FrameMaker(const body::BodySpace& space, int people, std::uint64_t seed,
-               const FrameRange& range);
+               const FrameRange& range, std::vector<body::Pose> recorded = {});
 
     [[nodiscard]] PartsFrame make(std::uint32_t index) const;
 
   private:
+    struct Person {
+        body::BodyShape shape; ///< the level's vertices
+        std::vector<Vec3f> normals;
+    };
+    [[nodiscard]] std::vector<Vec3f> pose(const Person& person, const body::JointTransforms& world,
+                                          Random& random) const;
+
     FrameRange range_;
     std::uint64_t seed_;
-    std::vector<body::BodyShape> people_;
+    std::vector<body::Pose> recorded_;
+    std::vector<Person> people_;
     body::SkinWeights skin_;          ///< of the level's vertices
     std::vector<Triangle> triangles_; ///< of the level's vertices
     std::vector<PartLabel> labels_;   ///< of the level's vertices

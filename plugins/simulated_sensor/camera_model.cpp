@@ -1,8 +1,8 @@
 #include "simulated_sensor/camera_model.h"
 
 #include "core/error.h"
+#include "imaging/depth_noise.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,8 +10,6 @@ namespace toile::simulated_sensor {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kSteepFrom = 60.0 * kDegree; // where the paper's second term begins
-constexpr double kSteepest = 82.0 * kDegree;  // both terms have a pole at 90 degrees
 
 double focal(int pixels, double field_degrees) {
     return 0.5 * pixels / std::tan(0.5 * field_degrees * kDegree);
@@ -71,7 +69,7 @@ imaging::Intrinsics CameraSettings::intrinsics() const {
 
 double CameraSettings::baseline_focal() const {
     const imaging::Intrinsics in = intrinsics();
-    return kBaseline_m * (upright ? in.fy : in.fx);
+    return imaging::kKinectBaseline_m * (upright ? in.fy : in.fx);
 }
 
 CameraSettings camera_of(CameraModel model) {
@@ -95,27 +93,6 @@ Eigen::Isometry3d look_at(const Vec3d& position, const Vec3d& target, double rol
     out.translation() = position;
     out.rotate(Eigen::AngleAxisd(roll, Vec3d::UnitZ()));
     return out;
-}
-
-double axial_sigma(double z, double tilt) {
-    const double t = std::min(tilt, kSteepest);
-    double sigma = 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
-    if (t > kSteepFrom) {
-        const double rest = 0.5 * std::numbers::pi - t;
-        sigma += 0.0001 / std::sqrt(z) * t * t / (rest * rest);
-    }
-    return sigma;
-}
-
-double lateral_sigma(double tilt) {
-    const double t = std::min(tilt, kSteepest);
-    return 0.8 + 0.035 * t / (0.5 * std::numbers::pi - t);
-}
-
-double quantise(double z, double baseline_focal) {
-    const double steps = std::rint(kDisparitySteps * baseline_focal / z);
-    return steps > 0.0 ? kDisparitySteps * baseline_focal / steps
-                       : std::numeric_limits<double>::infinity();
 }
 
 } // namespace toile::simulated_sensor

@@ -17,8 +17,8 @@ enum class CameraModel : std::uint8_t { invalid, kinect_v1, kinect_v2 };
 
 /// Each effect has a switch; where a number stands, 0 is off.
 struct NoiseSettings {
-    double axial = 1.0;       ///< times sigma_z of Nguyen et al. 2012: see axial_sigma
-    double lateral = 1.0;     ///< times sigma_L of the same: see lateral_sigma
+    double axial = 1.0;       ///< times sigma_z of Nguyen et al. 2012: see imaging/depth_noise.h
+    double lateral = 1.0;     ///< times sigma_L of the same, likewise
     bool quantisation = true; ///< disparity in 1/8 pixel, rounded to nearest
     bool shadow = true;       ///< no reading where the projector does not reach
     bool ragged = true;       ///< readings lost at silhouettes, on grazing surfaces and in hair
@@ -62,19 +62,5 @@ struct CameraSettings {
 /// \throw Error when the two are one, or above each other
 [[nodiscard]] Eigen::Isometry3d look_at(const Vec3d& position, const Vec3d& target,
                                         double roll = 0.0);
-
-/// Projector to camera of a Kinect v1, metres.
-inline constexpr double kBaseline_m = 0.075;
-/// Steps of disparity a pixel.
-inline constexpr double kDisparitySteps = 8.0;
-
-/// Nguyen, Izadi, Lovell 2012: deviation of the depth `z` metres of a surface whose normal is
-/// `tilt` radians from the ray, metres. Tilts beyond 82 degrees count as 82 (they measured to 80).
-[[nodiscard]] double axial_sigma(double z, double tilt);
-/// The same for a silhouette's place in the picture, pixels.
-[[nodiscard]] double lateral_sigma(double tilt);
-
-/// Depth whose disparity is the nearest multiple of 1/8 pixel.
-[[nodiscard]] double quantise(double z, double baseline_focal);
 
 } // namespace toile::simulated_sensor

@@ -1,5 +1,7 @@
 #include "simulated_sensor/depth_camera.h"
 
+#include "imaging/depth_noise.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -127,9 +129,10 @@ void DepthCamera::measure(const Stage& stage, std::uint32_t frame, const RowLoop
                          // Below 60 degrees the tilt does not count.
                          const double tilt =
                              hit.cosine < 0.5f ? std::acos(static_cast<double>(hit.cosine)) : 0.0;
-                         z += noise.axial * axial_sigma(z, tilt) * static_cast<double>(noise_[i]);
+                         z += noise.axial * imaging::axial_sigma(z, tilt) *
+                              static_cast<double>(noise_[i]);
                      }
-                     if (noise.quantisation) z = quantise(z, focal);
+                     if (noise.quantisation) z = imaging::quantise_disparity(z, focal);
                      z *= errors_.depth_scale;
                      if (round_to_mm) z = std::rint(1e3 * z) * 1e-3;
                      if (z >= settings_.nearest_m && z <= settings_.farthest_m)
@@ -248,8 +251,9 @@ void DepthCamera::shift_silhouettes(const Stage& stage, const PixelRandom& rando
                 seen_[i] = {hits_.depth[i], hits_.cosine[i], hits_.surface[i]};
                 dark_[i] = shadowed_[i];
                 if (near_silhouette_[i] == 0 || settings_.noise.lateral <= 0.0) continue;
-                const double sigma = settings_.noise.lateral *
-                                     lateral_sigma(static_cast<double>(nearest_tilt(x, y)));
+                const double sigma =
+                    settings_.noise.lateral *
+                    imaging::lateral_sigma(static_cast<double>(nearest_tilt(x, y)));
                 const Eigen::Vector2d place(
                     x + sigma * static_cast<double>(random.smooth_normal(Draw::shift_x, x, y)),
                     y + sigma * static_cast<double>(random.smooth_normal(Draw::shift_y, x, y)));

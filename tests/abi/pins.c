@@ -404,12 +404,25 @@ AT(toile_skinning, reserved, 4);
 AT(toile_skinning, bind, 8);
 AT(toile_skinning, pose, 16);
 
-SIZE(toile_tool_info, 32);
+SIZE(toile_tool_option, 64);
+AT(toile_tool_option, size, 0);
+AT(toile_tool_option, type, 4);
+AT(toile_tool_option, flags, 8);
+AT(toile_tool_option, reserved, 12);
+AT(toile_tool_option, name, 16);
+AT(toile_tool_option, value_name, 24);
+AT(toile_tool_option, text, 32);
+AT(toile_tool_option, default_value, 40);
+AT(toile_tool_option, minimum, 48);
+AT(toile_tool_option, maximum, 56);
+
+SIZE(toile_tool_info, 40);
 AT(toile_tool_info, size, 0);
-AT(toile_tool_info, reserved, 4);
+AT(toile_tool_info, option_count, 4);
 AT(toile_tool_info, command, 8);
 AT(toile_tool_info, summary, 16);
 AT(toile_tool_info, example, 24);
+AT(toile_tool_info, options, 32);
 
 SIZE(toile_tool, 24);
 AT(toile_tool, size, 0);

@@ -65,10 +65,26 @@ class Tuned {
         if (broken) throw std::runtime_error("no table in my folder");
     }
     double& parameter(std::size_t i) { return values_[i]; }
-    toile_tool_info describe() { return {0, 0, "tune", "Tunes", "toile tune"}; }
-    int run(std::span<const char* const> arguments, sdk::Job) {
-        return static_cast<int>(arguments.size());
+    toile_tool_info describe_tool() {
+        static const toile_tool_option pitch{sizeof(toile_tool_option),
+                                             TOILE_OPTION_REAL,
+                                             TOILE_OPTION_REPEATED,
+                                             0,
+                                             "pitch",
+                                             "HZ",
+                                             "To what",
+                                             "440",
+                                             1,
+                                             1000};
+        return {0, 1, "tune", "Tunes", "toile tune --pitch 440", &pitch};
     }
+    void run_tool(const sdk::ToolArguments& arguments, sdk::Job job) {
+        pitches = arguments.values("pitch");
+        last = arguments.number("pitch", 440.0);
+        job.progress(1.0, "tuned");
+    }
+    static inline std::vector<std::string> pitches;
+    static inline double last = 0.0;
 
   private:
     std::array<double, 2> values_{5, 4};
@@ -234,6 +250,27 @@ TEST(Sdk, ArraysOfStructsStepByTheSizeOfTheirFirst) {
         EXPECT_EQ(array[k].has_new_body, k);
     people[0].known.size = 16;
     EXPECT_THROW(sdk::SizedArray<toile_person>(&people[0].known, 3, "people"), sdk::Failure);
+}
+
+TEST(Sdk, ToolsGetTheirArguments) {
+    Services services(1);
+    Instance instance(linked(toile_plugin_entry_tuned), services);
+    const auto run = [&](std::vector<const char*> words, Job* job = nullptr) {
+        return instance.call("run", [&](auto* i) {
+            return instance.table<toile_tool>().run(i, static_cast<std::int32_t>(words.size()),
+                                                    words.data(), job ? job->handle() : nullptr);
+        });
+    };
+    EXPECT_EQ(run({}), TOILE_OK);
+    EXPECT_EQ(Tuned::last, 440.0);
+    EXPECT_EQ(run({"--pitch", "432", "--pitch", "415.5"}), TOILE_OK);
+    EXPECT_EQ(Tuned::pitches, (std::vector<std::string>{"432", "415.5"}));
+    EXPECT_EQ(Tuned::last, 415.5);
+    EXPECT_THROW(run({"--pitch", "high"}), Error);
+    EXPECT_THROW(run({nullptr}), Error);
+    Job stopped;
+    stopped.cancel();
+    EXPECT_THROW(run({}, &stopped), Cancelled);
 }
 
 TEST(Sdk, LinkedPluginsStandInARegistry) {

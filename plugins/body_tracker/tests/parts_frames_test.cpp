@@ -45,13 +45,17 @@ TEST(PartsFrames, AreTheSameWhenAskedAgainAndLabelledWhereSeen) {
 }
 
 TEST(PartsFrames, TheHipsLieBehindTheirSurface) {
-    const FrameMaker maker(space(), 4, 7, {});
+    FrameRange range;
+    range.clothes = range.noise = false;
+    const FrameMaker maker(space(), 4, 7, range);
     int inside = 0;
     for (std::uint32_t i = 0; i < 40; ++i) {
         const PartsFrame frame = maker.make(i);
         const Vec3f hips = frame.joints[0];
-        const auto x = std::lround(79.5f - frame.focal_px * hips.x() / hips.z());
-        const auto y = std::lround(59.5f + frame.focal_px * hips.y() / hips.z());
+        const auto x = std::lround(0.5f * static_cast<float>(frame.width - 1) -
+                                   frame.focal_px * hips.x() / hips.z());
+        const auto y = std::lround(0.5f * static_cast<float>(frame.height - 1) +
+                                   frame.focal_px * hips.y() / hips.z());
         if (x < 0 || y < 0 || x >= frame.width || y >= frame.height) continue;
         const int mm = frame.mm[static_cast<std::size_t>(y * frame.width + x)];
         EXPECT_GT(mm, 0) << "frame " << i;

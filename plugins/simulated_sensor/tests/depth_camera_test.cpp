@@ -1,4 +1,5 @@
 // Known scenes give known depths; each error has the size that its formula says.
+#include "imaging/depth_noise.h"
 #include "simulated_sensor/tests/stages.h"
 
 #include <cmath>
@@ -17,7 +18,7 @@ std::vector<double> scaled_errors(const DepthCamera& camera, double depth, doubl
         if (std::isnan(measured)) continue;
         const double z = plane_depth(camera.directions()[i], depth, tilt);
         const auto angle = std::acos(static_cast<double>(camera.hits().cosine[i]));
-        out.push_back((measured - z) / axial_sigma(z, angle));
+        out.push_back((measured - z) / imaging::axial_sigma(z, angle));
     }
     return out;
 }
@@ -108,9 +109,9 @@ TEST(DepthCamera, AxialNoiseFollowsNguyen) {
             EXPECT_NEAR(spread.deviation, 1.0, 4.0 / std::sqrt(2.0 * n)) << depth << " m, " << tilt;
         }
     // The formula itself, against figures worked out by hand.
-    EXPECT_NEAR(axial_sigma(2.4, 0.0), 0.0012 + 0.0019 * 4.0, 1e-12);
-    EXPECT_NEAR(axial_sigma(1.0, 75.0 * kDegree), 0.001884 + 0.0001 * 25.0, 1e-9);
-    EXPECT_NEAR(lateral_sigma(45.0 * kDegree), 0.835, 1e-12);
+    EXPECT_NEAR(imaging::axial_sigma(2.4, 0.0), 0.0012 + 0.0019 * 4.0, 1e-12);
+    EXPECT_NEAR(imaging::axial_sigma(1.0, 75.0 * kDegree), 0.001884 + 0.0001 * 25.0, 1e-9);
+    EXPECT_NEAR(imaging::lateral_sigma(45.0 * kDegree), 0.835, 1e-12);
 }
 
 TEST(DepthCamera, CorrelatedNoiseKeepsItsSizeAndGoesTogether) {
@@ -189,7 +190,8 @@ TEST(DepthCamera, LateralNoiseMovesSilhouettesByItsSigma) {
     for (int k = 0; k < 5; ++k) {
         const double share = shown[static_cast<std::size_t>(k)] / (480.0 * kFrames);
         const double outside = first + k - edge;
-        const double expected = 0.5 * std::erfc(outside / lateral_sigma(0.0) / std::numbers::sqrt2);
+        const double expected =
+            0.5 * std::erfc(outside / imaging::lateral_sigma(0.0) / std::numbers::sqrt2);
         EXPECT_NEAR(share, expected, 0.04) << outside << " pixels";
     }
 }
@@ -216,15 +218,15 @@ TEST(DepthCamera, LateralNoiseLeavesSurfacesWithoutEdgesAlone) {
 
 TEST(DepthCamera, QuantisationRoundsToTheNearestStepAndHasNoBias) {
     const double focal = camera_of(CameraModel::kinect_v1).baseline_focal();
-    const auto step = [&](double z) { return z * z / (kDisparitySteps * focal); };
+    const auto step = [&](double z) { return z * z / (imaging::kDisparitySteps * focal); };
     EXPECT_NEAR(step(0.9), 0.0023, 0.0002);
     EXPECT_NEAR(step(2.6), 0.0191, 0.002);
     for (const double from : {0.8, 1.5, 2.4}) {
         std::vector<double> errors;
         for (double z = from; z < from + 0.4; z += 1e-5) {
-            const double q = quantise(z, focal);
+            const double q = imaging::quantise_disparity(z, focal);
             ASSERT_LE(std::abs(q - z), 0.51 * step(z + 0.01));
-            const double disparity = kDisparitySteps * focal / q;
+            const double disparity = imaging::kDisparitySteps * focal / q;
             ASSERT_NEAR(disparity, std::round(disparity), 1e-9);
             errors.push_back(q - z);
         }
