@@ -21,7 +21,10 @@ constexpr float kLearnBelow = 0.3f;    // not explained: a wrong shape alone may
 constexpr int kFirstSteps = 2;
 constexpr int kTryTurnedEvery = 30; // frames
 constexpr int kTurnedSteps = 6;
-constexpr float kTurnedBetter = 0.85f;
+constexpr float kTurnedBetter = 0.85f, kTurnedBackwards = 1.25f, kTurnedAhead = 0.7f;
+constexpr float kWalks = 0.35f;       // m/s
+constexpr float kDriftSeconds = 0.3f; // over which that is told
+constexpr int kBackwardsFrames = 8;
 constexpr std::size_t kFewCells = 40;
 constexpr float kUsualHeight = 1.70f, kShortest = 1.45f, kTallest = 2.05f; // metres
 constexpr float kFullView = 0.30f; // share of a part's skin seen that gives all confidence
@@ -145,21 +148,28 @@ bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& u
     recovering_ = true;
     failures_ = since_turned_ = 0;
     unseen_s_ = astray_s_ = 0.0f;
+    drift_.setZero();
     smoother_.reset();
     settle(seen, 0.0f);
     following_ = Following::detected;
     return true;
 }
 
-/// The other facing fits nearly as well now and then; when it fits better it is right.
+/// The other facing fits nearly as well now and then; when it fits better it is right. Nobody walks
+/// backwards for long.
 void PersonTrack::try_turned(const SeenPerson& seen) noexcept {
-    if (++since_turned_ < kTryTurnedEvery || failed()) return;
+    const float ahead = drift_.dot(pose_.rotations[0] * Vec3f::UnitZ());
+    const bool backwards = ahead < -kWalks;
+    if (++since_turned_ < (backwards ? kBackwardsFrames : kTryTurnedEvery) || failed()) return;
+    const float better = backwards        ? kTurnedBackwards
+                         : ahead > kWalks ? kTurnedAhead
+                                          : kTurnedBetter;
     since_turned_ = 0;
     body::Pose pose = PoseSearch::turned_around(pose_);
     for (int step = 0; step < kTurnedSteps; ++step)
         (void)registration_.step(seen, options_.registration, nullptr, pose);
     const Agreement turned = registration_.judge(seen, pose);
-    if (turned.badness() < kTurnedBetter * agreement_.badness()) {
+    if (turned.badness() < better * agreement_.badness()) {
         pose_ = pose;
         moving_ = false;
     }
@@ -224,6 +234,8 @@ void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noex
     pose_ = pose;
     last_ = before;
     moving_ = true;
+    drift_ += body::approach(dt, kDriftSeconds) *
+              ((pose_.hips_position - before.hips_position) / std::max(dt, 1e-3f) - drift_);
     agreement_ = registration_.judge(seen, pose_);
     failures_ = failed() ? failures_ + 1 : 0;
     if (!sure_ || (options_.recover && failures_ >= kSearchAfter)) {

@@ -104,8 +104,9 @@ class PersonTrack {
     Agreement agreement_;
     int failures_ = 0; ///< frames in a row
     bool recovering_ = false;
-    bool sure_ = false;    ///< that it is somebody: the first search is over
-    int since_turned_ = 0; ///< frames since the other facing was tried
+    bool sure_ = false;           ///< that it is somebody: the first search is over
+    int since_turned_ = 0;        ///< frames since the other facing was tried
+    Vec3f drift_ = Vec3f::Zero(); ///< of the hips, m/s, over some frames
     float unseen_s_ = 0.0f;
     float astray_s_ = 0.0f; ///< how long the pose has explained little
     body::JointTransforms joints_;
