@@ -11,8 +11,13 @@ namespace {
 using testing::HasSubstr;
 
 std::vector<std::string> training(const std::string& out) {
-    return {"avatar",  "train-parts", "--model", std::string(TOILE_SOURCE_DIR) + "/avatars/adult",
-            "--frames", "150",        "--people", "4", "--trees", "2", "--depth", "4", "--out", out};
+    return {"avatar",   "train-parts",
+            "--model",  std::string(TOILE_SOURCE_DIR) + "/avatars/adult",
+            "--frames", "150",
+            "--people", "4",
+            "--trees",  "2",
+            "--depth",  "4",
+            "--out",    out};
 }
 
 std::string quoted(const std::vector<std::string>& words) {
@@ -56,11 +61,10 @@ TEST(TrainParts, StoppedAndCalledAgainItGivesTheSameBytes) {
     auto words = training(resumed.string());
     words.insert(words.end(), {"--checkpoint", checkpoint.string(), "--threads", "2"});
     // Interrupted as soon as the first level is kept.
-    const ProgramResult stopped =
-        run_program({"sh", "-c",
-                     "set -m; " + quoted(words) + " & pid=$!; for i in $(seq 3000); do [ -e '" +
-                         checkpoint.string() +
-                         "' ] && break; sleep 0.01; done; kill -INT $pid; wait $pid"});
+    const ProgramResult stopped = run_program(
+        {"sh", "-c",
+         "set -m; " + quoted(words) + " & pid=$!; for i in $(seq 3000); do [ -e '" +
+             checkpoint.string() + "' ] && break; sleep 0.01; done; kill -INT $pid; wait $pid"});
     EXPECT_EQ(stopped.status, 1) << stopped.output;
     EXPECT_FALSE(std::filesystem::exists(resumed));
     ASSERT_TRUE(std::filesystem::exists(checkpoint));

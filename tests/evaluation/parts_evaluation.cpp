@@ -6,9 +6,9 @@
 //
 // Poses are those of the motions as recorded, people are drawn with a seed of their own. What PCL
 // leaves open (whose left is left, how far away nobody is) is taken as it suits PCL best.
+#include "body_tracker/forest.h"
 #include "body_tracker/parts_frames.h"
 #include "core/bytes.h"
-#include "body_tracker/forest.h"
 #include "core/error.h"
 #include "evaluation/pcl_forest.h"
 
@@ -156,8 +156,8 @@ void label_pcl(const std::vector<evaluation::PclTree>& trees, const tracker::Par
         for (const evaluation::PclTree& tree : trees)
             ++votes[tree.label(mm.data(), frame.width, frame.height, frame.focal_px, pixels[i].x,
                                pixels[i].y)];
-        found[i] = static_cast<std::uint8_t>(std::max_element(votes.begin(), votes.end()) -
-                                             votes.begin());
+        found[i] =
+            static_cast<std::uint8_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
     }
     way.result.seconds += cpu_s() - start;
     way.result.pixel_trees += static_cast<double>(pixels.size() * trees.size());
@@ -203,9 +203,9 @@ nlohmann::ordered_json row(const char* name, const Result& result) {
 nlohmann::ordered_json evaluate(const Settings& settings, const body::BodySpace& space,
                                 const tracker::Forest& forest,
                                 const std::vector<evaluation::PclTree>& trees, bool facing) {
-    const tracker::FrameMaker maker(
-        space, settings.people, settings.seed, range_of(settings, facing ? 1.0 : 0.0),
-        tracker::read_poses(settings.motions, space.model().skeleton));
+    const tracker::FrameMaker maker(space, settings.people, settings.seed,
+                                    range_of(settings, facing ? 1.0 : 0.0),
+                                    tracker::read_poses(settings.motions, space.model().skeleton));
     Result ours;
     double fine = 0.0, total = 0.0;
     std::vector<PclWay> ways;

@@ -15,7 +15,8 @@ namespace {
 using body::Part;
 
 constexpr std::size_t kMostBytes = 128u << 20;
-/// PCL scales offsets by 1000 / depth in pictures whose focal length is 525 (tree.h, label_common.h).
+/// PCL scales offsets by 1000 / depth in pictures whose focal length is 525 (tree.h,
+/// label_common.h).
 constexpr float kScale = 1000.0f / 525.0f;
 
 std::string unpack(const std::filesystem::path& file) {
