@@ -129,11 +129,87 @@ void plays_its_sample(const PluginPtr& plugin) {
                "result: two runs give different bytes");
 }
 
+/// A camera of 64 x 48 pixels, 1 m above a floor.
+toile_stream small_camera() {
+    auto out = sized<toile_stream>();
+    out.depth = {64, 48, 58.0, 58.0, 31.5, 23.5, {}};
+    for (const int i : {0, 5, 10, 15})
+        out.color_from_depth[i] = out.world_from_camera[i] = 1.0;
+    out.world_from_camera[13] = 1.0;
+    out.has_world = out.registered = 1;
+    out.frame_period_s = 1.0 / 30.0;
+    return out;
+}
+
+/// What broken cameras send: nothing, zeros, the farthest, the nearest, noise.
+std::vector<std::vector<float>> broken_pictures() {
+    constexpr std::size_t kPixels = 64 * 48;
+    std::vector<std::vector<float>> out;
+    for (const float depth : {std::nanf(""), 0.0f, 65.535f, 0.01f, -1.0f, HUGE_VALF})
+        out.emplace_back(kPixels, depth);
+    auto& noise = out.emplace_back(kPixels);
+    for (std::size_t i = 0; i < kPixels; ++i)
+        noise[i] = 0.5f + static_cast<float>(i * 2654435761u % 7919) / 1600.0f;
+    return out;
+}
+
+void feeds_one(Bench& bench, const std::vector<float>& depth, std::uint32_t sequence) {
+    auto frame = sized<toile_frame>();
+    frame.sequence = sequence;
+    frame.timestamp_ns = 33'333'333ll * sequence;
+    frame.depth_m = view_of(depth);
+    auto input = sized<toile_body_source_input>();
+    input.frame_count = 1;
+    input.frames = &frame;
+    bench.ok("feed", [&](auto* i) { return bench.table<toile_body_source>().feed(i, &input); });
+}
+
+void survives_broken_pictures(const PluginPtr& plugin) {
+    Bench bench(plugin);
+    if (describe(bench).input != TOILE_SOURCE_FRAMES) return;
+    bench.activate();
+    const auto& table = bench.table<toile_body_source>();
+    const std::vector<float> some(64 * 48, 2.0f), short_one(64 * 47, 2.0f);
+    auto frame = sized<toile_frame>();
+    frame.depth_m = view_of(some);
+    auto input = sized<toile_body_source_input>();
+    input.frame_count = 1;
+    input.frames = &frame;
+    bench.fails("feed", "before begin", [&](auto* i) { return table.feed(i, &input); });
+    const toile_stream stream = small_camera();
+    auto setup = sized<toile_body_source_setup>();
+    setup.uri = "";
+    setup.stream_count = 1;
+    setup.streams = &stream;
+    setup.max_people = 2;
+    Job job;
+    bench.ok("begin", [&](auto* i) { return table.begin(i, &setup, job.handle()); });
+    frame.depth_m = view_of(short_one);
+    bench.fails("feed", "with a picture of another size than announced",
+                [&](auto* i) { return table.feed(i, &input); });
+    std::uint32_t sequence = 0;
+    for (const auto& picture : broken_pictures()) {
+        feeds_one(bench, picture, ++sequence);
+        std::vector<toile_joint> joints(TOILE_JOINT_COUNT);
+        auto person = sized<toile_person>();
+        person.state.size = sizeof(person.state);
+        person.joints = view_mut(joints);
+        std::uint32_t count = 1;
+        bench.ok("result", [&](auto* i) { return table.result(i, &person, &count); });
+        bench.rule(count <= 1, "result: gives more people than there is room for");
+        for (const toile_joint& joint : joints)
+            bench.finite("result", std::span(joint.position, sizeof(toile_joint) / sizeof(float)));
+    }
+    table.end(bench.instance().handle());
+}
+
 constexpr ContractCase kCases[] = {
     {TOILE_BODY_SOURCE, "body_source: describes its input and schemes", &describes_itself},
     {TOILE_BODY_SOURCE, "body_source: bad sources are refused with a text", &refuses_bad_sources},
     {TOILE_BODY_SOURCE, "body_source: its sample plays to the end, twice the same",
      &plays_its_sample},
+    {TOILE_BODY_SOURCE, "body_source: broken camera pictures are refused or survived",
+     &survives_broken_pictures},
 };
 
 } // namespace

@@ -98,7 +98,7 @@ void BodyTracking::follow_all(float dt) noexcept {
         if (!person->active()) continue;
         const std::uint32_t id = person->id();
         person->follow(seen_by(*person), scene_.up(), dt);
-        if (!person->active()) forget(id, *person);
+        if (!person->active() && !person->sure()) forget(id, *person);
         if (person->unseen_s() > options_.forget_s) person->stop();
     }
 }

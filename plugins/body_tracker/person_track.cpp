@@ -16,6 +16,8 @@ constexpr float kKeepsMoving = 0.8f;       // share of the last motion that goes
 constexpr int kSearchAfter = 2;            // failures in a row
 constexpr float kNobody = 0.45f;           // not explained: what was found is no person
 constexpr float kSurelyNobody = 0.6f;
+constexpr float kAstraySeconds = 1.0f; // nobody is followed where nobody is
+constexpr float kLearnBelow = 0.3f;    // not explained: a wrong shape alone may do that
 constexpr int kFirstSteps = 2;
 constexpr int kTryTurnedEvery = 30; // frames
 constexpr int kTurnedSteps = 6;
@@ -142,7 +144,7 @@ bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& u
     moving_ = sure_ = false;
     recovering_ = true;
     failures_ = since_turned_ = 0;
-    unseen_s_ = 0.0f;
+    unseen_s_ = astray_s_ = 0.0f;
     smoother_.reset();
     settle(seen, 0.0f);
     following_ = Following::detected;
@@ -199,8 +201,10 @@ void PersonTrack::recover(const SeenPerson& seen, const Vec3f& up) noexcept {
     }
     agreement_ = registration_.judge(seen, pose_);
     if (!found || sure_) return;
-    sure_ = true;
-    if (agreement_.unexplained > kNobody) stop();
+    if (agreement_.unexplained > kNobody)
+        stop();
+    else
+        sure_ = true;
 }
 
 void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noexcept {
@@ -228,6 +232,8 @@ void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noex
         recovering_ = false;
         try_turned(seen);
     }
+    astray_s_ = agreement_.unexplained > kNobody ? astray_s_ + dt : 0.0f;
+    if (astray_s_ > kAstraySeconds) stop();
     if (!active()) return;
     settle(seen, dt);
 }
@@ -237,7 +243,7 @@ void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
     following_ = failed() ? Following::uncertain
                  : !sure_ ? Following::detected
                           : Following::tracked;
-    if (options_.learn_shape && sure_ && !learner_.done() && !failed()) {
+    if (options_.learn_shape && sure_ && !learner_.done() && agreement_.unexplained < kLearnBelow) {
         learner_.add(registration_, seen, options_.registration, body_.shape());
         if (learner_.due()) {
             body::ShapeVector shape = body_.shape();

@@ -54,6 +54,8 @@ class PersonTrack {
     [[nodiscard]] bool active() const noexcept { return id_ != 0; }
     [[nodiscard]] std::uint32_t id() const noexcept { return id_; }
     [[nodiscard]] Following following() const noexcept { return following_; }
+    /// Is the first search over? Before that the person may turn out to be a thing.
+    [[nodiscard]] bool sure() const noexcept { return sure_; }
     [[nodiscard]] float unseen_s() const noexcept { return unseen_s_; }
     [[nodiscard]] const Agreement& agreement() const noexcept { return agreement_; }
     [[nodiscard]] const BoneDistance& bones() const noexcept { return bones_; }
@@ -105,6 +107,7 @@ class PersonTrack {
     bool sure_ = false;    ///< that it is somebody: the first search is over
     int since_turned_ = 0; ///< frames since the other facing was tried
     float unseen_s_ = 0.0f;
+    float astray_s_ = 0.0f; ///< how long the pose has explained little
     body::JointTransforms joints_;
     std::array<Vec3f, body::kJointCount> velocity_{}, turning_{};
     std::array<float, body::kJointCount> confidence_{};

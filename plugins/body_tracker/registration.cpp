@@ -11,12 +11,13 @@ namespace {
 
 using body::kJointCount;
 
-constexpr float kLeastCosine = 0.2f; // between surface and line of sight
-constexpr float kBehind = 0.10f;     // metres: what lies so far behind the body is not it
-constexpr float kExplained = 0.06f;  // metres (P5 3.6)
-constexpr float kSlackCells = 1.2f;  // an outline is not known better
-constexpr double kMostTurn = 0.4;    // radians a step
-constexpr double kMostShift = 0.25;  // metres a step
+constexpr float kLeastCosine = 0.2f;     // between surface and line of sight
+constexpr float kBehind = 0.10f;         // metres: what lies so far behind the body is not it
+constexpr float kExplained = 0.06f;      // metres (P5 3.6)
+constexpr float kSlackCells = 1.2f;      // an outline is not known better
+constexpr float kShapeSlackCells = 0.6f; // but over many frames
+constexpr double kMostTurn = 0.4;        // radians a step
+constexpr double kMostShift = 0.25;      // metres a step
 constexpr float kFloorDeviation = 0.01f;
 constexpr std::size_t kExtraEvery = 2; // every n-th cell is enough
 
@@ -58,33 +59,21 @@ void Registration::draw_pose(const body::Pose& pose) noexcept {
     body_.draw(posed_, camera_, drawing_);
 }
 
-void Registration::add_row(const TriangleJoints& joints, const std::array<float, 3>& weights,
-                           const Triangle& triangle, const Vec3f& at, const Vec3f& along,
-                           float residual, float weight) noexcept {
-    // Blocks of three: the hips' place, then each joint's turn.
-    std::array<Vec3f, kJointCount + 1> block;
-    std::array<int, kJointCount + 1> start;
-    block[0] = along;
-    start[0] = 0;
-    int count = 1;
-    const auto& below = body_.level().below;
-    for (std::uint8_t k = 0; k < joints.count; ++k) {
-        const std::size_t j = joints.joints[k];
-        const float share = weights[0] * below[triangle[0]][j] +
-                            weights[1] * below[triangle[1]][j] + weights[2] * below[triangle[2]][j];
-        if (share < 1e-3f) continue;
-        Vec3f turn = share * (at - posed_.joints[j].translation).cross(along);
-        if (const auto parent = body::joint_parent(static_cast<body::Joint>(j)))
-            turn = posed_.joints[static_cast<std::size_t>(*parent)].rotation.conjugate() * turn;
-        block[static_cast<std::size_t>(count)] = turn;
-        start[static_cast<std::size_t>(count++)] = 3 + 3 * static_cast<int>(j);
+void Registration::add_row(std::int32_t triangle, const std::array<float, 3>& weights,
+                           const Vec3f& at, const Vec3f& along, float residual,
+                           float weight) noexcept {
+    if (recording_) {
+        rows_.push_back({triangle, weights, at, along, residual, weight});
+        return;
     }
-    for (int a = 0; a < count; ++a) {
-        const Vec3f scaled = weight * block[static_cast<std::size_t>(a)];
-        const int row = start[static_cast<std::size_t>(a)];
-        for (int b = 0; b <= a; ++b) {
-            const Vec3f& other = block[static_cast<std::size_t>(b)];
-            float* to = sums_.data() + row * kStride + start[static_cast<std::size_t>(b)];
+    PlaceMotion motion;
+    body_.motion(posed_, triangle, weights, at, along, motion);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(motion.count); ++a) {
+        const Vec3f scaled = weight * motion.block[a];
+        const int row = motion.start[a];
+        for (std::size_t b = 0; b <= a; ++b) {
+            const Vec3f& other = motion.block[b];
+            float* to = sums_.data() + row * kStride + motion.start[b];
             for (int i = 0; i < 3; ++i)
                 for (int k = 0; k < 3; ++k)
                     to[i * kStride + k] += scaled[i] * other[k];
@@ -92,6 +81,14 @@ void Registration::add_row(const TriangleJoints& joints, const std::array<float,
         for (int i = 0; i < 3; ++i)
             sum_[static_cast<std::size_t>(row + i)] += scaled[i] * residual;
     }
+}
+
+/// A whole vertex.
+void Registration::add_vertex(std::uint32_t vertex, const Vec3f& along, float residual,
+                              float weight) noexcept {
+    const std::int32_t corner = body_.corner_of(vertex);
+    add_row(corner / 3, TrackedBody::weights_of(corner), posed_.positions[vertex], along, residual,
+            weight);
 }
 
 void Registration::add_readings(const SeenPerson& seen,
@@ -115,9 +112,7 @@ void Registration::add_readings(const SeenPerson& seen,
             const float facing = -place.normal.dot(ray) / ray.norm();
             if (facing < kLeastCosine) continue;
             const float residual = place.normal.dot(off * ray);
-            add_row(body_.joints_of(cell.triangle), place.weights,
-                    body_.level().triangles[static_cast<std::size_t>(cell.triangle)],
-                    place.position, place.normal, residual,
+            add_row(cell.triangle, place.weights, place.position, place.normal, residual,
                     information * geman_mcclure(residual, options.robust_m));
         }
 }
@@ -172,7 +167,8 @@ void Registration::add_extra(const SeenPerson& seen, const RegistrationOptions& 
                 if (squared < best) best = squared, at = k;
             }
             const float distance = std::sqrt(best);
-            const float slack = kSlackCells * camera_.footprint(depth);
+            const float slack =
+                (recording_ ? kShapeSlackCells : kSlackCells) * camera_.footprint(depth);
             if (distance < slack || distance > options.extra_reach_m) continue;
             const std::uint32_t v = visible_[at];
             const Vec3f off = posed_.positions[v] - p;
@@ -180,10 +176,7 @@ void Registration::add_extra(const SeenPerson& seen, const RegistrationOptions& 
             const float weight =
                 information * geman_mcclure(distance, 0.5f * options.extra_reach_m);
             // Along the way with all weight, across it with none: the nearest place may slide.
-            const std::int32_t corner = body_.corner_of(v);
-            add_row(body_.joints_of(corner / 3), body_.weights_of(corner),
-                    body_.level().triangles[static_cast<std::size_t>(corner / 3)],
-                    posed_.positions[v], way, distance - slack, weight);
+            add_vertex(v, way, distance - slack, weight);
         }
 }
 
@@ -206,17 +199,15 @@ void Registration::add_outline(const SeenPerson& seen,
         const Vec3f off =
             camera_.point(corner.x(), corner.y(), depth) - camera_.point(nx, ny, depth);
         const float distance = off.norm();
-        const float slack = kSlackCells * camera_.footprint(depth);
+        const float slack =
+            (recording_ ? kShapeSlackCells : kSlackCells) * camera_.footprint(depth);
         if (distance < slack) continue;
         const float reach = std::min(distance, options.outline_reach_m);
         // A vertex stands for the cells that its surface fills.
         const float cells =
             body_.level().areas[v] / (camera_.footprint(depth) * camera_.footprint(depth));
-        const std::int32_t at = body_.corner_of(v);
-        add_row(body_.joints_of(at / 3), body_.weights_of(at),
-                body_.level().triangles[static_cast<std::size_t>(at / 3)], posed_.positions[v],
-                off / distance, reach - slack,
-                information * cells * geman_mcclure(reach, 0.5f * options.outline_reach_m));
+        add_vertex(v, off / distance, reach - slack,
+                   information * cells * geman_mcclure(reach, 0.5f * options.outline_reach_m));
     }
 }
 
@@ -226,10 +217,7 @@ void Registration::add_floor(const SeenPerson& seen) noexcept {
     for (std::uint32_t v = 0; v < posed_.positions.size(); ++v) {
         const float height = seen.floor->normal.dot(posed_.positions[v]) - seen.floor->offset;
         if (height >= 0.0f) continue;
-        const std::int32_t at = body_.corner_of(v);
-        add_row(body_.joints_of(at / 3), body_.weights_of(at),
-                body_.level().triangles[static_cast<std::size_t>(at / 3)], posed_.positions[v],
-                seen.floor->normal, std::max(height, -0.1f), information);
+        add_vertex(v, seen.floor->normal, std::max(height, -0.1f), information);
     }
 }
 
@@ -280,6 +268,17 @@ double Registration::step(const SeenPerson& seen, const RegistrationOptions& opt
     return turn * scale;
 }
 
+/// Is the body drawn in a neighbouring cell, about as deep? An outline may be a cell off.
+bool Registration::beside_body(int x, int y, float depth) const noexcept {
+    for (int n = 0; n < 9; ++n) {
+        const int nx = x + n % 3 - 1, ny = y + n / 3 - 1;
+        if (nx < 0 || ny < 0 || nx >= camera_.width || ny >= camera_.height) continue;
+        const float drawn = drawing_.cells[static_cast<std::size_t>(ny * camera_.width + nx)].depth;
+        if (drawn != 0.0f && std::abs(drawn - depth) < kExplained) return true;
+    }
+    return false;
+}
+
 Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bool whole) noexcept {
     if (whole)
         body_.pose(pose, posed_);
@@ -302,7 +301,7 @@ Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bo
                 const float off = std::abs(cell.depth - real);
                 if (cell.depth != 0.0f && off < kExplained)
                     ++explained, sum += static_cast<double>(off);
-                else
+                else if (!beside_body(x, y, real))
                     ++lacking;
             } else if (cell.depth != 0.0f && (real == 0.0f || real > cell.depth + kBehind)) {
                 // Beside an outline a cell may be either's.

@@ -67,9 +67,9 @@ class Registration {
     [[nodiscard]] const Drawing& drawing() const noexcept { return drawing_; }
 
     /// Normal matrix and gradient of shape and pose around the last judged pose, data only:
-    /// (shapes + 69). `shapes`: so many of the first coefficients.
+    /// (shapes + 69). `shapes`: so many of the first coefficients. Allocates.
     void linearise_shape(const SeenPerson& seen, const RegistrationOptions& options, int shapes,
-                         Eigen::MatrixXd& normal, Eigen::VectorXd& gradient) const noexcept;
+                         Eigen::MatrixXd& normal, Eigen::VectorXd& gradient);
 
   private:
     static constexpr int kUnknowns = body::kPoseUnknowns;
@@ -81,16 +81,27 @@ class Registration {
         Vec3f position = Vec3f::Zero();
         Vec3f normal = Vec3f::Zero();
     };
+    /// One residual, as add_row takes it.
+    struct Row {
+        std::int32_t triangle;
+        std::array<float, 3> weights;
+        Vec3f at, along;
+        float residual, weight;
+    };
+    [[nodiscard]] bool beside_body(int x, int y, float depth) const noexcept;
     [[nodiscard]] Place place_of(const DrawnCell& cell) const noexcept;
     void draw_pose(const body::Pose& pose) noexcept;
     void add_readings(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_extra(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_outline(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_floor(const SeenPerson& seen) noexcept;
-    void add_row(const TriangleJoints& joints, const std::array<float, 3>& weights,
-                 const Triangle& triangle, const Vec3f& at, const Vec3f& along, float residual,
-                 float weight) noexcept;
+    void add_row(std::int32_t triangle, const std::array<float, 3>& weights, const Vec3f& at,
+                 const Vec3f& along, float residual, float weight) noexcept;
+    void add_vertex(std::uint32_t vertex, const Vec3f& along, float residual,
+                    float weight) noexcept;
     void add_motion(const MotionPrior& motion, const body::Pose& pose) noexcept;
+    [[nodiscard]] Eigen::MatrixXf joint_moves(int shapes) const;
+    [[nodiscard]] Eigen::VectorXf shape_motion(const Row& row, const Eigen::MatrixXf& joints) const;
     void find_visible(const SeenPerson& seen) noexcept;
 
     const TrackedBody& body_;
@@ -98,6 +109,8 @@ class Registration {
     body::PosePrior prior_;
     PosedBody posed_;
     Drawing drawing_;
+    std::vector<Row> rows_; // of linearise_shape
+    bool recording_ = false;
     std::vector<std::uint32_t> visible_; // vertices that the camera sees
     std::vector<float> seen_x_, seen_y_, seen_z_;
     std::array<float, kStride * kStride> sums_{};

@@ -7,82 +7,78 @@ namespace toile::body_tracker {
 
 using body::kJointCount;
 
-constexpr std::size_t kEvery = 3; // cells; no divisor of usual widths
+constexpr std::size_t kCells = 600; // readings of a frame that are enough
 
 void Registration::linearise_shape(const SeenPerson& seen, const RegistrationOptions& options,
-                                   int shapes, Eigen::MatrixXd& normal,
-                                   Eigen::VectorXd& gradient) const noexcept {
-    const body::FitModel& model = body_.model();
-    const body::FitLevel& level = body_.level();
-    // World moves of the joints by coefficient, along the chain of bones.
-    const body::ShapeRows& local = model.joint_components();
-    Eigen::MatrixXf joints = Eigen::MatrixXf::Zero(3 * kJointCount, shapes);
-    for (std::size_t j = 1; j < kJointCount; ++j) {
-        const auto p = static_cast<std::size_t>(*body::joint_parent(static_cast<body::Joint>(j)));
-        const auto at = static_cast<int>(3 * j), from = static_cast<int>(3 * p);
-        joints.middleRows<3>(at) =
-            joints.middleRows<3>(from) +
-            posed_.joints[p].rotation.toRotationMatrix() *
-                (local.block(at, 0, 3, shapes) - local.block(from, 0, 3, shapes));
-    }
+                                   int shapes, Eigen::MatrixXd& normal, Eigen::VectorXd& gradient) {
+    RegistrationOptions fewer = options;
+    fewer.most_cells = kCells;
+    rows_.clear();
+    recording_ = true;
+    find_visible(seen);
+    add_readings(seen, fewer);
+    add_extra(seen, fewer);
+    add_outline(seen, fewer);
+    recording_ = false;
+    const Eigen::MatrixXf joints = joint_moves(shapes);
     const int size = shapes + body::kPoseUnknowns;
     Eigen::MatrixXf sums = Eigen::MatrixXf::Zero(size + 1, size + 1);
-    Eigen::VectorXf row(size + 1);
-    const float information = static_cast<float>(kEvery) * options.cell_information /
-                              (options.deviation_m * options.deviation_m);
-    for (std::size_t i = 0; i < drawing_.cells.size(); i += kEvery) {
-        const DrawnCell& cell = drawing_.cells[i];
-        if (cell.depth == 0.0f || seen.mask.cells[i] == 0) continue;
-        const float off = cell.depth - seen.grid.depth[i];
-        if (std::abs(off) > options.reach_m) continue;
-        const Place place = place_of(cell);
-        const auto n = static_cast<int>(i);
-        const Vec3f ray = camera_.point(static_cast<float>(n % camera_.width),
-                                        static_cast<float>(n / camera_.width), 1.0f);
-        if (-place.normal.dot(ray) < 0.35f * ray.norm()) continue;
-        row.setZero();
-        const Triangle& t = level.triangles[static_cast<std::size_t>(cell.triangle)];
-        for (std::size_t c = 0; c < 3; ++c) {
-            const std::uint32_t v = t[c];
-            const Vec3f rest = posed_.rotations[v].conjugate() * place.normal;
-            row.head(shapes) +=
-                place.weights[c] *
-                (rest.transpose() * level.components.block(static_cast<int>(3 * v), 0, 3, shapes))
-                    .transpose();
-            for (std::size_t k = 0; k < 4; ++k) {
-                const float w = place.weights[c] * level.skin.weights[v][k];
-                if (w == 0.0f) continue;
-                const int j = level.skin.joints[v][k];
-                const Vec3f turned =
-                    posed_.joints[static_cast<std::size_t>(j)].rotation.conjugate() * place.normal;
-                row.head(shapes) += w * ((place.normal.transpose() * joints.middleRows<3>(3 * j)) -
-                                         turned.transpose() * local.block(3 * j, 0, 3, shapes))
-                                            .transpose();
-            }
-        }
-        row.segment<3>(shapes) = place.normal;
-        const TriangleJoints& moved = body_.joints_of(cell.triangle);
-        for (std::uint8_t k = 0; k < moved.count; ++k) {
-            const std::size_t j = moved.joints[k];
-            const float share = place.weights[0] * level.below[t[0]][j] +
-                                place.weights[1] * level.below[t[1]][j] +
-                                place.weights[2] * level.below[t[2]][j];
-            Vec3f turn =
-                share * (place.position - posed_.joints[j].translation).cross(place.normal);
-            if (const auto parent = body::joint_parent(static_cast<body::Joint>(j)))
-                turn = posed_.joints[static_cast<std::size_t>(*parent)].rotation.conjugate() * turn;
-            row.segment<3>(shapes + 3 + 3 * static_cast<int>(j)) = turn;
-        }
-        const float residual = place.normal.dot(off * ray);
-        row[size] = residual;
-        const float s = options.robust_m * options.robust_m;
-        const float robust = s / (s + residual * residual);
-        sums.selfadjointView<Eigen::Lower>().rankUpdate(row, information * robust * robust);
+    Eigen::VectorXf line(size + 1);
+    for (const Row& row : rows_) {
+        line.setZero();
+        line.head(shapes) = shape_motion(row, joints);
+        PlaceMotion motion;
+        body_.motion(posed_, row.triangle, row.weights, row.at, row.along, motion);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(motion.count); ++k)
+            line.segment<3>(shapes + motion.start[k]) = motion.block[k];
+        line[size] = row.residual;
+        sums.selfadjointView<Eigen::Lower>().rankUpdate(line, row.weight);
     }
     normal = Eigen::MatrixXf(sums.selfadjointView<Eigen::Lower>())
                  .topLeftCorner(size, size)
                  .cast<double>();
     gradient = sums.row(size).head(size).cast<double>().transpose();
+}
+
+/// How the joints move with each coefficient, along the chain of bones (3 joints x shapes).
+Eigen::MatrixXf Registration::joint_moves(int shapes) const {
+    const body::ShapeRows& local = body_.model().joint_components();
+    Eigen::MatrixXf out = Eigen::MatrixXf::Zero(3 * kJointCount, shapes);
+    for (std::size_t j = 1; j < kJointCount; ++j) {
+        const auto p = static_cast<std::size_t>(*body::joint_parent(static_cast<body::Joint>(j)));
+        const auto at = static_cast<int>(3 * j), from = static_cast<int>(3 * p);
+        out.middleRows<3>(at) =
+            out.middleRows<3>(from) +
+            posed_.joints[p].rotation.toRotationMatrix() *
+                (local.block(at, 0, 3, shapes) - local.block(from, 0, 3, shapes));
+    }
+    return out;
+}
+
+/// How row.along . x changes with each coefficient (shapes).
+Eigen::VectorXf Registration::shape_motion(const Row& row, const Eigen::MatrixXf& joints) const {
+    const auto shapes = static_cast<int>(joints.cols());
+    const body::FitLevel& level = body_.level();
+    const body::ShapeRows& local = body_.model().joint_components();
+    Eigen::RowVectorXf out = Eigen::RowVectorXf::Zero(shapes);
+    const Triangle& corners = level.triangles[static_cast<std::size_t>(row.triangle)];
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t v = corners[c];
+        if (row.weights[c] == 0.0f) continue;
+        const Vec3f rest = posed_.rotations[v].conjugate() * row.along;
+        out += row.weights[c] *
+               (rest.transpose() * level.components.block(static_cast<int>(3 * v), 0, 3, shapes));
+        for (std::size_t k = 0; k < 4; ++k) {
+            const float w = row.weights[c] * level.skin.weights[v][k];
+            if (w == 0.0f) continue;
+            const int j = level.skin.joints[v][k];
+            const Vec3f turned =
+                posed_.joints[static_cast<std::size_t>(j)].rotation.conjugate() * row.along;
+            out += w * (row.along.transpose() * joints.middleRows<3>(3 * j) -
+                        turned.transpose() * local.block(3 * j, 0, 3, shapes));
+        }
+    }
+    return out.transpose();
 }
 
 } // namespace toile::body_tracker

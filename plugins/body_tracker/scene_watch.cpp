@@ -175,7 +175,7 @@ void SceneWatch::learn(const DepthGrid& grid, std::span<const std::uint8_t> peop
                                            [&](const Piece& p) { return p.label == labels_[i]; });
             if (!waits) behind = d;
         } else if (d > behind + step) {
-            behind = d;
+            behind = 0.0f; // what was behind may be a person
         } else if (d > behind - step) {
             behind += kLearn * (d - behind);
         } else {

@@ -28,7 +28,7 @@ bool ShapeLearner::due() const noexcept {
     return frames_ == 1 || frames_ == 3 || frames_ == 8 || frames_ == 20 || frames_ == kFrames;
 }
 
-void ShapeLearner::add(const Registration& registration, const SeenPerson& seen,
+void ShapeLearner::add(Registration& registration, const SeenPerson& seen,
                        const RegistrationOptions& options, const body::ShapeVector& shape) {
     registration.linearise_shape(seen, options, kShapes, normal_, gradient_);
     constexpr int pose = body::kPoseUnknowns;

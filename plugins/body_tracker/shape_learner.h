@@ -16,8 +16,8 @@ class ShapeLearner {
     [[nodiscard]] bool done() const noexcept { return frames_ >= kFrames; }
 
     /// Adds the frame that `registration` judged last, for the shape it was drawn with.
-    void add(const Registration& registration, const SeenPerson& seen,
-             const RegistrationOptions& options, const body::ShapeVector& shape);
+    void add(Registration& registration, const SeenPerson& seen, const RegistrationOptions& options,
+             const body::ShapeVector& shape);
     /// Is it time for a new shape?
     [[nodiscard]] bool due() const noexcept;
     /// The likeliest shape so far: whitened components, those beyond kShapes 0.

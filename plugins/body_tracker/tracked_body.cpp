@@ -12,6 +12,7 @@ using body::kJointCount;
 
 constexpr float kNearest = 0.2f; // metres
 constexpr float kLeastShare = 0.02f;
+constexpr float kLeastMoved = 1e-3f;
 
 float cross(const Vec3f& a, const Vec3f& b, float x, float y) noexcept {
     return (b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x());
@@ -59,6 +60,29 @@ void TrackedBody::set_stature(float stature_m) {
     const double more =
         static_cast<double>(stature_m - (level_.mean[top].y() - level_.mean[sole].y()));
     set_shape(grows * (more / grows.squaredNorm()));
+}
+
+void TrackedBody::motion(const PosedBody& posed, std::int32_t triangle,
+                         const std::array<float, 3>& weights, const Vec3f& at, const Vec3f& along,
+                         PlaceMotion& out) const noexcept {
+    out.block[0] = along;
+    out.start[0] = 0;
+    std::size_t count = 1;
+    const Triangle& corners = level_.triangles[static_cast<std::size_t>(triangle)];
+    const TriangleJoints& moved = joints_of(triangle);
+    for (std::uint8_t k = 0; k < moved.count; ++k) {
+        const std::size_t j = moved.joints[k];
+        const float share = weights[0] * level_.below[corners[0]][j] +
+                            weights[1] * level_.below[corners[1]][j] +
+                            weights[2] * level_.below[corners[2]][j];
+        if (share < kLeastMoved) continue;
+        Vec3f turn = share * (at - posed.joints[j].translation).cross(along);
+        if (const auto parent = body::joint_parent(static_cast<body::Joint>(j)))
+            turn = posed.joints[static_cast<std::size_t>(*parent)].rotation.conjugate() * turn;
+        out.block[count] = turn;
+        out.start[count++] = 3 + 3 * static_cast<int>(j);
+    }
+    out.count = static_cast<int>(count);
 }
 
 PosedBody TrackedBody::blank() const {

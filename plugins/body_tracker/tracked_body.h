@@ -38,6 +38,15 @@ struct TriangleJoints {
     std::array<std::uint8_t, body::kJointCount> joints{};
 };
 
+/// How `along` . x of a place on the surface changes with the pose: three unknowns each for the
+/// hips' place and for the turn of every joint that moves it (as body::moved_pose has them). The
+/// blend of turns where bones share the skin, and pose correctives, count as fixed.
+struct PlaceMotion {
+    int count = 0;
+    std::array<Vec3f, body::kJointCount + 1> block;
+    std::array<int, body::kJointCount + 1> start; ///< of the block among the 69 unknowns
+};
+
 /// Shape is set now and then; posing and drawing allocate nothing once their outputs are sized.
 class TrackedBody {
   public:
@@ -65,6 +74,10 @@ class TrackedBody {
         out[static_cast<std::size_t>(corner % 3)] = 1.0f;
         return out;
     }
+
+    /// `weights` of a triangle's corners say where on it `at` (posed) is.
+    void motion(const PosedBody& posed, std::int32_t triangle, const std::array<float, 3>& weights,
+                const Vec3f& at, const Vec3f& along, PlaceMotion& out) const noexcept;
 
     [[nodiscard]] PosedBody blank() const;
     void pose(const body::Pose& pose, PosedBody& out) const noexcept;

@@ -10,9 +10,11 @@
 namespace toile::openni2_sensor {
 namespace {
 
-constexpr double kUsualView = 1.0226; // radians: 58.6 degrees, of the cameras of this family
-constexpr int kReadTimeout = 2000;    // milliseconds: a recording that gives nothing is over
+constexpr double kUsualView = 1.0226;    // radians: 58.6 degrees, of the cameras of this family
+constexpr int kReadTimeout = 2000;       // milliseconds: a recording that gives nothing is over
+constexpr int kFirstFrameTimeout = 1000; // milliseconds, at closing
 constexpr std::int64_t kNanoseconds = 1000;
+constexpr openni::DepthPixel kAllBits = 0xffff; // saturated too, whatever the device tells
 
 Error failed(const std::string& uri, const std::string& what) {
     std::string told = openni::OpenNI::getExtendedError();
@@ -20,6 +22,16 @@ Error failed(const std::string& uri, const std::string& what) {
         told.pop_back();
     std::replace(told.begin(), told.end(), '\n', ' ');
     return Error("openni2:" + uri + ": " + what + (told.empty() ? "" : ": " + told));
+}
+
+/// Whether a picture is what the stream's mode and our buffers promise.
+bool fits(const openni::VideoFrameRef& frame, const imaging::Intrinsics& in,
+          openni::PixelFormat format, int bytes_a_pixel) {
+    return frame.getWidth() == in.width && frame.getHeight() == in.height &&
+           frame.getVideoMode().getPixelFormat() == format &&
+           frame.getStrideInBytes() >= in.width * bytes_a_pixel &&
+           frame.getDataSize() >=
+               frame.getStrideInBytes() * (in.height - 1) + in.width * bytes_a_pixel;
 }
 
 } // namespace
@@ -33,6 +45,7 @@ class CameraDevice::Streams : public openni::OpenNI::DeviceDisconnectedListener 
     Streams& operator=(const Streams&) = delete;
     ~Streams() override {
         openni::OpenNI::removeDeviceDisconnectedListener(this);
+        wait_for_player();
         depth_frame.release();
         color_frame.release();
         for (openni::VideoStream* stream : {&color, &depth}) {
@@ -54,6 +67,15 @@ class CameraDevice::Streams : public openni::OpenNI::DeviceDisconnectedListener 
     int frames = 0, read = 0; ///< of a recording
 
   private:
+    /// The player's thread, if it has not begun when its recording is closed, misses that and is
+    /// waited for in vain, three seconds. A frame shows that it has begun.
+    void wait_for_player() {
+        if (frames == 0 || depth_frame.isValid()) return;
+        openni::VideoStream* stream = &depth;
+        int ready = 0;
+        openni::OpenNI::waitForAnyStream(&stream, 1, &ready, kFirstFrameTimeout);
+    }
+
     std::string uri_;
 };
 
@@ -105,6 +127,8 @@ void CameraDevice::describe(const Address& address, const DeviceOptions& options
     default:
         throw failed(address.uri, "its depth is neither in millimetres nor in tenths of them");
     }
+    const int largest = depth.getMaxPixelValue();
+    if (largest > 0) saturated_ = largest;
     intrinsics_.width = mode.getResolutionX();
     intrinsics_.height = mode.getResolutionY();
     const double across = depth.getHorizontalFieldOfView();
@@ -151,14 +175,15 @@ CameraDevice::Step CameraDevice::next_of_recording(SensedFrame& out) {
     const int wait = live_ ? 0 : kReadTimeout;
     if (openni::OpenNI::waitForAnyStream(&depth, 1, &ready, wait) != openni::STATUS_OK)
         return live_ && !streams_->gone ? Step::nothing_new : Step::over;
-    if (!take_depth(out)) return Step::nothing_new;
+    const Step step = take_depth(out);
+    if (step == Step::nothing_new) return step;
     const int index = streams_->depth_frame.getFrameIndex();
     if (index < streams_->read) { // begun anew
         streams_->read = streams_->frames;
         return Step::over;
     }
     streams_->read = index;
-    if (!streams_->color.isValid()) return Step::frame;
+    if (step != Step::frame || !streams_->color.isValid()) return step;
     openni::VideoStream* color = &streams_->color;
     // The colour of the same moment stands beside the depth.
     const std::int64_t wanted = out.timestamp_ns / kNanoseconds;
@@ -183,44 +208,45 @@ CameraDevice::Step CameraDevice::poll(SensedFrame& out) {
     }
     if (openni::OpenNI::waitForAnyStream(&depth, 1, &ready, 0) != openni::STATUS_OK)
         return streams_->gone ? Step::lost : Step::nothing_new;
-    if (!take_depth(out)) return streams_->gone ? Step::lost : Step::nothing_new;
-    return streams_->gone ? Step::lost : Step::frame;
+    const Step step = take_depth(out);
+    return streams_->gone ? Step::lost : step;
 }
 
-bool CameraDevice::take_depth(SensedFrame& out) {
+CameraDevice::Step CameraDevice::take_depth(SensedFrame& out) {
     openni::VideoFrameRef& frame = streams_->depth_frame;
-    if (streams_->depth.readFrame(&frame) != openni::STATUS_OK) return false;
+    if (streams_->depth.readFrame(&frame) != openni::STATUS_OK) return Step::nothing_new;
+    last_size_ = {frame.getWidth(), frame.getHeight()};
+    const auto format =
+        unit_m_ < 5e-4f ? openni::PIXEL_FORMAT_DEPTH_100_UM : openni::PIXEL_FORMAT_DEPTH_1_MM;
+    if (!fits(frame, intrinsics_, format, sizeof(openni::DepthPixel))) return Step::wrong_size;
     const auto width = static_cast<std::size_t>(intrinsics_.width);
     const auto height = static_cast<std::size_t>(intrinsics_.height);
     out.depth.assign(width * height, std::numeric_limits<float>::quiet_NaN());
     out.sequence = static_cast<std::uint32_t>(frame.getFrameIndex());
     out.timestamp_ns = static_cast<std::int64_t>(frame.getTimestamp()) * kNanoseconds;
-    const auto rows = std::min(height, static_cast<std::size_t>(frame.getHeight()));
-    const auto columns = std::min(width, static_cast<std::size_t>(frame.getWidth()));
     const auto* bytes = static_cast<const std::uint8_t*>(frame.getData());
-    for (std::size_t y = 0; y < rows; ++y) {
+    for (std::size_t y = 0; y < height; ++y) {
         const auto* row = reinterpret_cast<const openni::DepthPixel*>(
             bytes + y * static_cast<std::size_t>(frame.getStrideInBytes()));
-        for (std::size_t x = 0; x < columns; ++x)
-            if (row[x] != 0)
+        for (std::size_t x = 0; x < width; ++x)
+            if (row[x] != 0 && row[x] != saturated_ && row[x] != kAllBits)
                 out.depth[y * width + (flip_depth_ ? width - 1 - x : x)] =
                     unit_m_ * static_cast<float>(row[x]);
     }
-    return true;
+    return Step::frame;
 }
 
 void CameraDevice::take_color(SensedFrame& out) {
     openni::VideoFrameRef& frame = streams_->color_frame;
     if (streams_->color.readFrame(&frame) != openni::STATUS_OK) return;
+    if (!fits(frame, intrinsics_, openni::PIXEL_FORMAT_RGB888, 3)) return out.color.clear();
     const auto width = static_cast<std::size_t>(intrinsics_.width);
     const auto height = static_cast<std::size_t>(intrinsics_.height);
     out.color.assign(4 * width * height, 255);
-    const auto rows = std::min(height, static_cast<std::size_t>(frame.getHeight()));
-    const auto columns = std::min(width, static_cast<std::size_t>(frame.getWidth()));
     const auto* bytes = static_cast<const std::uint8_t*>(frame.getData());
-    for (std::size_t y = 0; y < rows; ++y) {
+    for (std::size_t y = 0; y < height; ++y) {
         const auto* row = bytes + y * static_cast<std::size_t>(frame.getStrideInBytes());
-        for (std::size_t x = 0; x < columns; ++x)
+        for (std::size_t x = 0; x < width; ++x)
             std::copy_n(row + 3 * x, 3,
                         out.color.begin() +
                             static_cast<std::ptrdiff_t>(

@@ -17,6 +17,11 @@ struct DeviceOptions {
     bool live = false; ///< recordings keep to their own pace
 };
 
+struct PictureSize {
+    int width = 0, height = 0;
+    bool operator==(const PictureSize&) const = default;
+};
+
 struct SensedFrame {
     std::uint32_t sequence = 0;
     std::int64_t timestamp_ns = 0;   ///< the device's clock
@@ -40,16 +45,20 @@ class CameraDevice {
     /// The field of view is a guess, since the device does not tell it.
     [[nodiscard]] bool guessed_view() const noexcept { return guessed_view_; }
 
-    enum class Step : std::uint8_t { invalid, frame, nothing_new, over, lost };
+    enum class Step : std::uint8_t { invalid, frame, nothing_new, over, lost, wrong_size };
     /// Takes what is there: a live device's newest picture, a recording's next one (live: when it
-    /// is due). `lost`: unplugged. Allocates nothing after the first frame.
+    /// is due). `lost`: unplugged. `wrong_size`: a depth picture came that is not of the size or
+    /// kind that was described; it is taken and left out. Colour of a wrong size is left out alone.
+    /// Allocates nothing after the first frame.
     Step poll(SensedFrame& out);
+    /// Of the last depth picture, right or wrong.
+    [[nodiscard]] PictureSize last_size() const noexcept { return last_size_; }
 
   private:
     class Streams; ///< OpenNI2's own
     void describe(const Address& address, const DeviceOptions& options);
     Step next_of_recording(SensedFrame& out);
-    bool take_depth(SensedFrame& out); ///< false: it cannot be read
+    Step take_depth(SensedFrame& out);
     void take_color(SensedFrame& out);
 
     std::unique_ptr<Streams> streams_;
@@ -58,6 +67,8 @@ class CameraDevice {
     bool registered_ = false, guessed_view_ = false, recording_ = false, live_ = false;
     bool flip_depth_ = false, flip_color_ = false;
     float unit_m_ = 0.001f;
+    int saturated_ = 0xffff; ///< the device's largest value
+    PictureSize last_size_;
 };
 
 } // namespace toile::openni2_sensor

@@ -5,13 +5,49 @@
 #include <OpenNI.h>
 #include <algorithm>
 #include <array>
+#include <condition_variable>
+#include <deque>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <set>
+#include <thread>
 
 namespace toile::openni2_sensor {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Paths that recordings were opened by, in the whole process: OpenNI2 lists them as devices for
+/// good.
+class Leases {
+  public:
+    static Leases& instance() {
+        static auto* const leases = new Leases; // addresses may outlive everything static
+        return *leases;
+    }
+    /// The file by a path that nobody has: dots are put in as long as somebody does.
+    Address take(const fs::path& file) {
+        const std::scoped_lock lock(mutex_);
+        fs::path path = file;
+        while (!taken_.insert(path.string()).second)
+            path = path.parent_path() / "." / path.filename();
+        const std::string name = path.string();
+        known_.insert(name);
+        return {name, true, std::shared_ptr<const void>(this, [this, name](const void*) {
+                    const std::scoped_lock release(mutex_);
+                    taken_.erase(name);
+                })};
+    }
+    [[nodiscard]] bool is_recording(const std::string& uri) {
+        const std::scoped_lock lock(mutex_);
+        return known_.contains(uri);
+    }
+
+  private:
+    std::mutex mutex_;
+    std::set<std::string> taken_, known_;
+};
 
 bool is_number(const std::string& text) {
     return !text.empty() && text.size() < 4 &&
@@ -41,14 +77,41 @@ std::string what_there_is(const std::vector<DeviceName>& devices) {
 
 } // namespace
 
+struct OpenNiLibrary::Queue {
+    std::mutex mutex;
+    std::condition_variable filled;
+    std::deque<std::function<void()>> works;
+
+    [[noreturn]] void run() {
+        for (;;) {
+            std::unique_lock lock(mutex);
+            filled.wait(lock, [&] { return !works.empty(); });
+            const auto work = std::move(works.front());
+            works.pop_front();
+            lock.unlock();
+            work();
+        }
+    }
+};
+
 const OpenNiLibrary& OpenNiLibrary::running() {
     static const OpenNiLibrary* const library = new OpenNiLibrary();
     return *library;
 }
 
-OpenNiLibrary::OpenNiLibrary() {
-    if (openni::OpenNI::initialize() != openni::STATUS_OK)
-        throw Error(std::string("OpenNI2 does not start: ") + openni::OpenNI::getExtendedError());
+OpenNiLibrary::OpenNiLibrary() : queue_(std::make_shared<Queue>()) {
+    std::thread([queue = queue_] { queue->run(); }).detach();
+    post([] {
+        if (openni::OpenNI::initialize() != openni::STATUS_OK)
+            throw Error(std::string("OpenNI2 does not start: ") +
+                        openni::OpenNI::getExtendedError());
+    }).get();
+}
+
+void OpenNiLibrary::enqueue(std::function<void()> work) const {
+    const std::scoped_lock lock(queue_->mutex);
+    queue_->works.push_back(std::move(work));
+    queue_->filled.notify_one();
 }
 
 std::vector<DeviceName> list_devices(const OpenNiLibrary&) {
@@ -56,8 +119,7 @@ std::vector<DeviceName> list_devices(const OpenNiLibrary&) {
     openni::OpenNI::enumerateDevices(&found);
     std::vector<DeviceName> out;
     for (int i = 0; i < found.getSize(); ++i) {
-        std::error_code ignored;
-        if (fs::is_regular_file(found[i].getUri(), ignored)) continue; // an opened recording
+        if (Leases::instance().is_recording(found[i].getUri())) continue;
         out.push_back({found[i].getUri(), found[i].getVendor(), found[i].getName()});
     }
     return out;
@@ -67,20 +129,20 @@ Address resolve(const std::string& source, const OpenNiLibrary& library) {
     const bool names_file = fs::path(source).extension() == ".oni" || fs::is_regular_file(source);
     if (names_file) {
         check_recording(source);
-        return {source, true};
+        return Leases::instance().take(source);
     }
     const auto devices = list_devices(library);
     const std::size_t index = source.empty()      ? 0
                               : is_number(source) ? std::stoul(source)
                                                   : devices.size();
     if (source.empty() || is_number(source)) {
-        if (index < devices.size()) return {devices[index].uri, false};
+        if (index < devices.size()) return {devices[index].uri, false, nullptr};
         throw Error("openni2:" + source + ": no such camera; " + what_there_is(devices));
     }
     const bool known = std::any_of(devices.begin(), devices.end(),
                                    [&](const DeviceName& d) { return d.uri == source; });
     if (!known) throw Error("openni2:" + source + ": no such camera; " + what_there_is(devices));
-    return {source, false};
+    return {source, false, nullptr};
 }
 
 } // namespace toile::openni2_sensor

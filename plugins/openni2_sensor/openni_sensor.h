@@ -2,12 +2,21 @@
 #pragma once
 
 #include "openni2_sensor/camera_device.h"
+#include "openni2_sensor/frame_clock.h"
 
 #include <chrono>
 #include <functional>
 #include <future>
 
 namespace toile::openni2_sensor {
+
+/// Bad frames so far.
+struct FrameFaults {
+    std::uint32_t wrong_size = 0;  ///< left out
+    std::uint32_t repeated = 0;    ///< left out
+    std::uint32_t late = 0;        ///< left out
+    std::uint32_t clock_jumps = 0; ///< set right
+};
 
 class OpenNiSensor {
   public:
@@ -27,10 +36,12 @@ class OpenNiSensor {
     [[nodiscard]] bool recording() const noexcept { return address_.recording; }
 
     /// The next frame: true when there is one. Numbers and times rise from frame to frame, whatever
-    /// the device says: one that comes twice is left out, a clock that goes back is set right, and
-    /// what was missed while it was unplugged counts as dropped. Never waits for a device.
+    /// the device says (FrameClock), and what was missed while it was unplugged counts as dropped.
+    /// Never waits for a device. \throw Error once, when the pictures have another size than was
+    /// described for good; nothing comes any more then
     bool poll();
     [[nodiscard]] const SensedFrame& frame() const noexcept { return frame_; }
+    [[nodiscard]] const FrameFaults& faults() const noexcept { return faults_; }
     /// Of a recording: everything was given.
     [[nodiscard]] bool over() const noexcept { return over_; }
     /// A recording from its beginning. \throw Error
@@ -38,8 +49,12 @@ class OpenNiSensor {
 
   private:
     using Clock = std::chrono::steady_clock;
+    [[nodiscard]] std::unique_ptr<CameraDevice> open_device() const;
+    /// Closed after what was posted before; nobody need wait.
+    std::future<void> close_device();
     void look_for_device();
     bool accept();
+    void note_wrong_size();
 
     const OpenNiLibrary& library_;
     DeviceOptions options_;
@@ -47,16 +62,15 @@ class OpenNiSensor {
     Address address_;
     imaging::Intrinsics intrinsics_;
     double period_s_ = 0.0;
-    bool has_color_ = false, registered_ = false, over_ = false;
+    bool has_color_ = false, registered_ = false;
+    bool over_ = false, begun_ = false;    ///< begun: polled since it was opened or rewound
     std::unique_ptr<CameraDevice> device_; ///< none: unplugged
     std::future<std::unique_ptr<CameraDevice>> returning_;
     Clock::time_point looked_, last_seen_;
     SensedFrame frame_;
-    bool any_ = false, fresh_ = true; ///< some frame was given; none by this device
-    std::uint32_t device_number_ = 0; ///< of its last frame
-    std::int64_t device_time_ns_ = 0;
-    std::uint32_t number_ = 0; ///< as given
-    std::int64_t time_ns_ = 0;
+    FrameClock clock_;
+    FrameFaults faults_;
+    int wrong_in_a_row_ = 0;
 };
 
 } // namespace toile::openni2_sensor

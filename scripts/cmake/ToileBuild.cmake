@@ -103,9 +103,9 @@ function(toile_add_plugin name)
     set_property(TARGET ${name} APPEND PROPERTY LINK_DEPENDS
         "${CMAKE_SOURCE_DIR}/scripts/cmake/plugin_exports.map")
     set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${out}")
-    file(GLOB beside CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}"
+    file(GLOB_RECURSE beside CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}"
          "${CMAKE_CURRENT_SOURCE_DIR}/plugin.json" "${CMAKE_CURRENT_SOURCE_DIR}/sample.*"
-         "${CMAKE_CURRENT_SOURCE_DIR}/*.forest")
+         "${CMAKE_CURRENT_SOURCE_DIR}/sample/*" "${CMAKE_CURRENT_SOURCE_DIR}/*.forest")
     foreach(file ${beside})
         configure_file("${file}" "${out}/${file}" COPYONLY)
     endforeach()

@@ -1,66 +1,22 @@
 // The real OpenNI2 library, with cameras of a driver that tests know (tests/driver), and
 // recordings.
+#include "core/bytes.h"
 #include "imaging/oni_writer.h"
-#include "openni2_sensor/openni_sensor.h"
-#include "openni2_sensor/tests/driver/test_pictures.h"
+#include "openni2_sensor/tests/test_camera.h"
+#include "support/ball_pictures.h"
 #include "support/temporary_folder.h"
 #include "support/throws.h"
 
+#include <cstdlib>
 #include <gtest/gtest.h>
 
-#include <dlfcn.h>
-
-#include <cmath>
 #include <fstream>
 #include <limits>
-#include <thread>
 
 namespace toile::openni2_sensor {
 namespace {
 
 using namespace test;
-
-void plug(int camera, bool in) {
-    void* driver = dlopen(TOILE_TEST_DRIVER, RTLD_NOW | RTLD_NOLOAD);
-    ASSERT_NE(driver, nullptr) << "OpenNI2 has not loaded " << TOILE_TEST_DRIVER;
-    const auto call = reinterpret_cast<void (*)(int, int)>(dlsym(driver, "toile_test_plug"));
-    ASSERT_NE(call, nullptr);
-    call(camera, in ? 1 : 0);
-    dlclose(driver);
-}
-
-/// Polls for at most some seconds.
-bool wait_for_frame(OpenNiSensor& sensor, double seconds = 5.0) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    while (std::chrono::steady_clock::now() < until) {
-        if (sensor.poll()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return false;
-}
-
-/// Number of the picture that a frame shows, told by its depth; -1: it is none of the driver's.
-int shown_number(const SensedFrame& frame, bool mirrored = false) {
-    for (int number = 1; number <= 2000; ++number) {
-        bool same = true;
-        for (int y = 0; y < kHeight && same; ++y)
-            for (int x = 0; x < kWidth && same; ++x) {
-                const float metres = frame.depth[static_cast<std::size_t>(
-                    y * kWidth + (mirrored ? kWidth - 1 - x : x))];
-                const std::uint16_t true_mm = depth_at(x, y, number);
-                same = true_mm == 0 ? std::isnan(metres)
-                                    : std::lround(1000.0f * metres) == long{true_mm};
-            }
-        if (same) return number;
-    }
-    return -1;
-}
-
-std::vector<std::string> heard;
-OpenNiSensor::Log log_to_heard() {
-    heard.clear();
-    return [](const std::string& text) { heard.push_back(text); };
-}
 
 TEST(OpenNiSensor, TheFirstCameraGivesItsPicturesAsTheyAre) {
     OpenNiSensor sensor("", {}, log_to_heard());
@@ -113,7 +69,7 @@ TEST(OpenNiSensor, MirroredWhereWished) {
 }
 
 TEST(OpenNiSensor, GoesOnWhenItsCameraIsPluggedInAgain) {
-    OpenNiSensor sensor("0", {}, log_to_heard());
+    OpenNiSensor sensor(kUris[0], {}, log_to_heard());
     ASSERT_TRUE(wait_for_frame(sensor));
     plug(0, false);
     while (wait_for_frame(sensor, 0.2)) { // what was on its way
@@ -132,6 +88,8 @@ TEST(OpenNiSensor, GoesOnWhenItsCameraIsPluggedInAgain) {
     EXPECT_GT(sensor.frame().timestamp_ns, time_ns + 1000000000);
     ASSERT_EQ(heard.size(), 2u);
     EXPECT_NE(heard[1].find("is back"), std::string::npos);
+    plug(1, false); // the order of before, for tests that run after this one
+    plug(1, true);
 }
 
 /// Pictures as the test camera's, as the engine has them.
@@ -210,6 +168,53 @@ TEST(OniRecording, ThePlayerOfOpenNiGivesEveryPictureBitForBit) {
             sensor.rewind();
         }
     }
+}
+
+TEST(OniRecording, IsClosedAtOnceHoweverLittleWasPlayed) {
+    const toile::test::TemporaryFolder folder;
+    const auto file = record(folder.path(), true);
+    for (int i = 0; i < 30; ++i) {
+        auto sensor = std::make_unique<OpenNiSensor>(file, DeviceOptions{}, log_to_heard());
+        for (int k = 0; k < i % 3; ++k)
+            EXPECT_TRUE(sensor->poll());
+        const auto began = std::chrono::steady_clock::now();
+        sensor.reset();
+        EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
+    }
+}
+
+TEST(OniRecording, TwoPlayersOfOneFileDoNotShareItsFrames) {
+    const toile::test::TemporaryFolder folder;
+    const auto file = record(folder.path(), true);
+    OpenNiSensor one(file, {}, log_to_heard());
+    OpenNiSensor other(file, {}, log_to_heard());
+    for (int i = 1; i <= kRecorded; ++i)
+        for (OpenNiSensor* sensor : {&one, &other}) {
+            ASSERT_TRUE(sensor->poll()) << i;
+            EXPECT_EQ(shown_number(sensor->frame()), i);
+        }
+}
+
+constexpr int kSampleFrames = 4;
+
+void write_sample(const std::filesystem::path& file) {
+    const auto camera = toile::test::ball_camera(32, 24);
+    imaging::OniWriter writer(file, camera, true, 30.0);
+    for (int k = 0; k < kSampleFrames; ++k) {
+        const auto picture = toile::test::ball_color_picture(camera, k);
+        writer.add(k / 30.0, toile::test::ball_depth_picture(camera, k), &picture);
+    }
+    writer.finish();
+}
+
+TEST(OniRecording, ThePluginsSampleIsWhatTheWriterWrites) {
+    const toile::test::TemporaryFolder folder;
+    write_sample(folder / "sample.oni");
+    if (std::getenv("TOILE_WRITE_SAMPLES") != nullptr)
+        std::filesystem::copy_file(folder / "sample.oni", TOILE_SAMPLE,
+                                   std::filesystem::copy_options::overwrite_existing);
+    EXPECT_EQ(read_bytes(TOILE_SAMPLE, 1u << 20), read_bytes(folder / "sample.oni", 1u << 20))
+        << "run this test with TOILE_WRITE_SAMPLES=1 to write the sample anew";
 }
 
 TEST(OniRecording, KeepsToItsOwnPaceWhereWished) {
