@@ -28,12 +28,11 @@ class ToolCommand {
     void open(CLI::App& command) {
         services_ = std::make_unique<host::Services>(global_.threads);
         host::Registry registry(*services_, {.folders = folders_});
-        instance_ = std::make_unique<host::Instance>(registry.find(TOILE_TOOL, manifest_.id),
-                                                     *services_);
+        instance_ =
+            std::make_unique<host::Instance>(registry.find(TOILE_TOOL, manifest_.id), *services_);
         auto info = host::sized<toile_tool_info>();
-        instance_->call("describe", [&](auto* i) {
-            return instance_->table<toile_tool>().describe(i, &info);
-        });
+        instance_->call("describe",
+                        [&](auto* i) { return instance_->table<toile_tool>().describe(i, &info); });
         if (info.command == nullptr || manifest_.command != info.command)
             throw Error(manifest_.file.string() + ": command: is not what the library describes");
         command.footer("Example: " + std::string(info.example == nullptr ? "" : info.example));

@@ -37,8 +37,7 @@ void options_are_whole(const PluginPtr& plugin) {
         bench.rule(filled(option.name) && filled(option.text), which + " has no name or text");
         bench.rule(option.type > TOILE_OPTION_INVALID && option.type <= TOILE_OPTION_OUTPUT,
                    which + " has an unknown type");
-        const bool number =
-            option.type == TOILE_OPTION_REAL || option.type == TOILE_OPTION_INTEGER;
+        const bool number = option.type == TOILE_OPTION_REAL || option.type == TOILE_OPTION_INTEGER;
         bench.rule(!number || option.minimum <= option.maximum, which + " has no range");
     }
 }
@@ -49,8 +48,7 @@ void refuses_wrong_calls(const PluginPtr& plugin) {
     const auto& table = bench.table<toile_tool>();
     bench.fails("describe", "without a place to write to",
                 [&](auto* i) { return table.describe(i, nullptr); });
-    bench.fails("run", "without words",
-                [&](auto* i) { return table.run(i, 1, nullptr, nullptr); });
+    bench.fails("run", "without words", [&](auto* i) { return table.run(i, 1, nullptr, nullptr); });
     const char* nothing = nullptr;
     bench.fails("run", "with a word that is null",
                 [&](auto* i) { return table.run(i, 1, &nothing, nullptr); });

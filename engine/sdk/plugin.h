@@ -18,6 +18,7 @@
 
 #include <array>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 namespace toile::sdk {
@@ -105,11 +106,20 @@ struct Lifecycle {
     }
 };
 
+/// Folder of this library, where its data stand: told once, when it is opened, and the same for all
+/// of its instances. Empty when it is linked in (tests). [any thread]
+inline std::string& library_folder() noexcept {
+    static std::string folder;
+    return folder;
+}
+
 /// The entry of a library that holds these classes.
 template <class... P>
 struct Entry {
     static_assert(sizeof...(P) > 0);
-    static toile_status init(const char*) noexcept { return TOILE_OK; }
+    static toile_status init(const char* folder) noexcept {
+        return guarded(nullptr, [&] { library_folder() = folder == nullptr ? "" : folder; });
+    }
     static void deinit() noexcept {}
     static std::uint32_t count() noexcept { return sizeof...(P); }
     static const toile_descriptor* describe(std::uint32_t index) noexcept {

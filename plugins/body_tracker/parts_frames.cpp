@@ -157,7 +157,8 @@ PartsFrame FrameMaker::make(std::uint32_t index) const {
     Random random(Random(seed_ ^ (std::uint64_t{index} << 20)).next());
     const Person& person = people_[random.next() % people_.size()];
     const body::Skeleton& skeleton = person.shape.skeleton;
-    const body::Pose pose = stand(skeleton, draw_pose(skeleton, recorded_, random), range_, random);
+    const body::Pose pose =
+        stand(skeleton, draw_pose(skeleton, recorded_, range_.poses, random), range_, random);
     const auto world = body::forward_kinematics(skeleton, pose);
     std::vector<Vec3f> points = this->pose(person, world, random);
 

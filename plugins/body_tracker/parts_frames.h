@@ -3,6 +3,7 @@
 
 #include "body/body_space.h"
 #include "body_tracker/parts_labels.h"
+#include "body_tracker/parts_poses.h"
 #include "core/random.h"
 
 #include <array>
@@ -23,8 +24,9 @@ struct FrameRange {
     double cut_share = 0.15;   ///< of frames with the person up to the picture's edge
     double facing_share = 0.5; ///< of frames where people face the camera, up to 60 degrees off
     double shape_spread = 1.3; ///< of the population's deviation
-    bool clothes = true;       ///< clothes and hair
-    bool noise = true;         ///< of a Kinect v1: imaging/depth_noise.h
+    PoseMix poses;
+    bool clothes = true; ///< clothes and hair
+    bool noise = true;   ///< of a Kinect v1: imaging/depth_noise.h
 };
 
 struct PartsFrame {

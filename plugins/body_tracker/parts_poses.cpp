@@ -142,15 +142,16 @@ Pose standing_pose(const body::Skeleton& skeleton, Random& random) {
     return pose;
 }
 
-Pose draw_pose(const body::Skeleton& skeleton, std::span<const Pose> recorded, Random& random) {
+Pose draw_pose(const body::Skeleton& skeleton, std::span<const Pose> recorded, const PoseMix& mix,
+               Random& random) {
     const double kind = random.uniform();
     if (recorded.empty())
         return kind < 0.5 ? standing_pose(skeleton, random) : body::random_pose(skeleton, random);
-    if (kind >= 0.8) return body::random_pose(skeleton, random);
-    if (kind >= 0.4) return standing_pose(skeleton, random);
+    if (kind >= mix.recorded + mix.standing) return body::random_pose(skeleton, random);
+    if (kind >= mix.recorded) return standing_pose(skeleton, random);
     Pose pose = recorded[random.next() % recorded.size()];
     if (random.next() % 2 == 0) pose = body::mirrored(pose);
-    return perturbed(pose, random.uniform(5.0, 15.0) * kDegree, random);
+    return perturbed(pose, mix.turned * random.uniform(5.0, 15.0) * kDegree, random);
 }
 
 } // namespace toile::body_tracker

@@ -23,10 +23,17 @@ namespace toile::body_tracker {
 /// front, forearm raised, at the head, behind the back; often both alike. Faces +Z.
 [[nodiscard]] body::Pose standing_pose(const body::Skeleton& skeleton, Random& random);
 
-/// Of the recorded poses, mirrored half the time and perturbed by 5 to 15 degrees (40 %), standing
-/// (40 %), or anywhere within the joints' limits (20 %); without recorded ones standing and
+/// Shares of the kinds of poses; what is left is anywhere within the joints' limits.
+struct PoseMix {
+    double recorded = 0.4;
+    double standing = 0.4;
+    double turned = 1.0; ///< recorded ones are perturbed by 5 to 15 degrees times this
+};
+
+/// A pose of the mix, recorded ones mirrored half the time; without recorded ones standing and
 /// anywhere have equal shares. Faces +Z.
 [[nodiscard]] body::Pose draw_pose(const body::Skeleton& skeleton,
-                                   std::span<const body::Pose> recorded, Random& random);
+                                   std::span<const body::Pose> recorded, const PoseMix& mix,
+                                   Random& random);
 
 } // namespace toile::body_tracker

@@ -81,11 +81,10 @@ std::string train_parts_by(const sdk::ToolArguments& arguments, const PartsToolS
     const auto space = body::BodySpace::load(model);
     const auto named = arguments.values("motions");
     const std::vector<std::filesystem::path> motions(named.begin(), named.end());
-    const auto forest = train_parts(space, read_poses(motions, space.model().skeleton),
-                                    read_options(arguments, setting.seed), setting.rows,
-                                    [&](double share, const std::string& text) {
-                                        return !job.cancelled(share, text.c_str());
-                                    });
+    const auto forest = train_parts(
+        space, read_poses(motions, space.model().skeleton), read_options(arguments, setting.seed),
+        setting.rows,
+        [&](double share, const std::string& text) { return !job.cancelled(share, text.c_str()); });
     if (!forest) throw sdk::Failure(TOILE_CANCELLED, "stopped");
     save_forest(*forest, out);
     std::size_t leaves = 0;

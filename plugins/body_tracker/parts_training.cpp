@@ -110,6 +110,7 @@ std::optional<Forest> train_parts(const body::BodySpace& space, std::vector<body
     if (!forest) return std::nullopt;
     const auto push_back = learn_push_back(
         *forest, maker, static_cast<std::uint32_t>(options.frames), options.push_back_frames);
+    forest->push_back_mm.clear(); // a checkpoint's are zeros
     for (const float metres : push_back)
         forest->push_back_mm.push_back(static_cast<std::int16_t>(std::lround(1000.0f * metres)));
     return forest;

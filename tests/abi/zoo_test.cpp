@@ -98,6 +98,15 @@ const WrongManifest kWrongManifests[] = {
      "provides 'toile.skinning/2', a kind or revision that this engine does not know"},
     {"need", HEAD ABI R"("needs":["toile.gpu/1"],)" KINDS "}", Refusal::need_unknown,
      "needs 'toile.gpu/1', which this engine does not offer"},
+    {"tool_without_command", HEAD ABI R"("provides":["toile.tool/1"]})", Refusal::manifest_invalid,
+     "/command: must tell the words of what provides toile.tool/1"},
+    {"command_without_tool", HEAD ABI R"("command":{"words":"fly","summary":"Flies"},)" KINDS "}",
+     Refusal::manifest_invalid, "/command: is for plugins that provide toile.tool/1"},
+    {"command_of_wrong_words",
+     HEAD ABI R"("command":{"words":"fly  High","summary":""},"provides":["toile.tool/1"]})",
+     Refusal::manifest_invalid,
+     "/command/words: 'fly  High' must be one to three words of a-z and -, joined by single "
+     "blanks"},
     {"no_library", HEAD ABI KINDS "}", Refusal::library_missing,
      "library 'libzoo.so': no such file beside the manifest"},
 };

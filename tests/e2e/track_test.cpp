@@ -44,10 +44,10 @@ class TrackTest : public testing::Test {
 
 TEST_F(TrackTest, FollowsSomebodyAsTheTruthHasIt) {
     write(kTurning);
-    ASSERT_EQ(run_toile({"record", "--source", simulated(), "--out", at("capture"),
-                         "--no-surfaces"})
-                  .status,
-              0);
+    ASSERT_EQ(
+        run_toile({"record", "--source", simulated(), "--out", at("capture"), "--no-surfaces"})
+            .status,
+        0);
     const auto run = track("capture:" + at("capture"), "track.jsonl",
                            {"--report", at("report.json"), "--pictures", at("pictures")});
     ASSERT_EQ(run.status, 0) << run.output;
@@ -85,8 +85,9 @@ TEST_F(TrackTest, TheSameBytesTwiceWithOneAndTwoThreads) {
 
 TEST_F(TrackTest, AMirrorDressesWhoStandsBeforeTheCamera) {
     write(kTurning);
-    const auto run = run_toile({"mirror", "--source", simulated(), "--garment", "t-shirt",
-                                "--headless", "--out", at("pictures"), "--frames", "4", "--picture", "160x240"});
+    const auto run =
+        run_toile({"mirror", "--source", simulated(), "--garment", "t-shirt", "--headless", "--out",
+                   at("pictures"), "--frames", "4", "--picture", "160x240"});
     ASSERT_EQ(run.status, 0) << run.output;
     EXPECT_TRUE(fs::exists(folder_ / "pictures" / "000003.png"));
     const auto frames = body::read_track_frames(folder_ / "pictures" / "track.jsonl");

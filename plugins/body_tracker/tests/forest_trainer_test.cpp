@@ -106,6 +106,51 @@ TEST(ForestTrainer, ResumedGivesTheSameBytesWhereverItStopped) {
     }
 }
 
+std::size_t leaves(const Forest& forest, std::size_t tree) {
+    return forest.trees[tree].leaves.size() / static_cast<std::size_t>(forest.class_count);
+}
+
+TEST(ForestTrainer, LeavesKeepWithinTheirBound) {
+    const TrainingSet set = squares(1, 20);
+    const Forest free = *train_forest(set, small(), serial_rows, always);
+    ASSERT_GT(leaves(free, 0), 20u);
+    TrainerOptions options = small();
+    options.max_leaves = 12;
+    const Forest bounded = *train_forest(set, options, serial_rows, always);
+    for (const std::size_t tree : {0u, 1u}) {
+        EXPECT_LE(leaves(bounded, tree), 12u);
+        EXPECT_GE(leaves(bounded, tree), 9u);
+    }
+}
+
+TEST(ForestTrainer, BalanceHelpsARareClass) {
+    // Of one quarter only every 40th pixel is given.
+    TrainingSet rare;
+    const TrainingSet all = squares(1, 30);
+    std::vector<TrainingSet::Sample> kept;
+    for (std::uint32_t f = 0, at = 0; f < all.frame_count(); ++f) {
+        kept.clear();
+        for (; at < all.samples().size() && all.samples()[at].frame == f; ++at)
+            if (all.samples()[at].label != 3 || at % 40 == 0) kept.push_back(all.samples()[at]);
+        rare.add(all.frame(f), kept);
+    }
+    const auto found = [&](double balance) {
+        TrainerOptions options = small();
+        options.depth = 4;
+        options.balance = balance;
+        const Forest forest = *train_forest(rare, options, serial_rows, always);
+        std::size_t right = 0;
+        const TrainingSet unseen = squares(2, 10);
+        for (const auto& s : unseen.samples()) {
+            std::array<std::uint16_t, 4> sums{};
+            classify(forest, unseen.frame(s.frame), s.x, s.y, sums);
+            right += s.label == 3 && std::max_element(sums.begin(), sums.end()) == sums.end() - 1;
+        }
+        return right;
+    };
+    EXPECT_GT(found(1.0), found(0.0));
+}
+
 TEST(ForestTrainer, CheckpointsOfAnotherTrainingAreRefused) {
     const test::TemporaryFolder folder;
     TrainerOptions options = small();
@@ -122,6 +167,9 @@ TEST(ForestTrainer, BadOptionsAndSamplesAreRefused) {
     EXPECT_THAT(refusal({}, options), HasSubstr("there are no samples"));
     options.class_count = 3;
     EXPECT_THAT(refusal(squares(1, 1), options), HasSubstr("has label 3, but class_count is 3"));
+    options = small();
+    options.balance = 1.5;
+    EXPECT_THAT(refusal(squares(1, 1), options), HasSubstr("balance must be 0 to 1"));
     options = small();
     options.depth = 0;
     EXPECT_THAT(refusal(squares(1, 1), options), HasSubstr("depth must be 1 to 30"));

@@ -84,5 +84,15 @@ TEST(JointProposals, UnsurePixelsAreLeftOut) {
     EXPECT_EQ(scene.propose(PartLabel::head)[0].confidence, 0.0f);
 }
 
+TEST(JointProposals, TheForestsPushBackIsUsed) {
+    Forest forest;
+    forest.class_count = kPartCount;
+    EXPECT_EQ(proposal_options(forest).push_back_m[3], 0.0f);
+    forest.push_back_mm.assign(kPartCount, 0);
+    forest.push_back_mm[3] = 125;
+    EXPECT_FLOAT_EQ(proposal_options(forest).push_back_m[3], 0.125f);
+    EXPECT_EQ(proposal_options(forest).push_back_m[4], 0.0f);
+}
+
 } // namespace
 } // namespace toile::body_tracker
