@@ -68,13 +68,17 @@ bool SceneWatch::foreground(std::size_t cell, float depth, const Vec3f& at) cons
     return behind == 0.0f || depth < behind - kLeastStep - kStepShare * depth * depth;
 }
 
-void SceneWatch::grow_piece(const DepthGrid& grid, std::size_t seed, std::uint16_t label) noexcept {
+/// Labels what hangs together with a cell; how many cells that are.
+std::size_t SceneWatch::grow_piece(const DepthGrid& grid, std::size_t seed,
+                                   std::uint16_t label) noexcept {
     stack_.clear();
     stack_.push_back(static_cast<std::uint32_t>(seed));
     labels_[seed] = label;
+    std::size_t count = 0;
     while (!stack_.empty()) {
         const auto i = static_cast<int>(stack_.back());
         stack_.pop_back();
+        ++count;
         const int x = i % camera_.width, y = i / camera_.width;
         constexpr std::array<std::array<int, 2>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
         for (const auto& [dx, dy] : kSides) {
@@ -88,6 +92,7 @@ void SceneWatch::grow_piece(const DepthGrid& grid, std::size_t seed, std::uint16
             stack_.push_back(static_cast<std::uint32_t>(n));
         }
     }
+    return count;
 }
 
 bool SceneWatch::like_a_person(const DepthGrid& grid, std::uint16_t label,
@@ -112,7 +117,6 @@ bool SceneWatch::like_a_person(const DepthGrid& grid, std::uint16_t label,
         out.area_m2 += camera_.footprint(d) * camera_.footprint(d);
         ++out.cells;
     }
-    if (out.cells < kFewCells) return false;
     const float count = static_cast<float>(out.cells);
     out.middle = sum / count;
     const Vec3f size = high - low;
@@ -143,7 +147,8 @@ void SceneWatch::look(const DepthGrid& grid) noexcept {
     std::uint16_t label = 0;
     for (std::size_t i = 0; i < front_.size(); ++i) {
         if (front_[i] == 0 || labels_[i] != 0 || label == 65535) continue;
-        grow_piece(grid, i, ++label);
+        // Specks of noise are many, and each look at a piece goes over all cells.
+        if (grow_piece(grid, i, ++label) < kFewCells) continue;
         Piece piece;
         if (!like_a_person(grid, label, piece)) continue;
         const auto at =

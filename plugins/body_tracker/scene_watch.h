@@ -44,7 +44,7 @@ class SceneWatch {
   private:
     void find_floor(const DepthGrid& grid);
     [[nodiscard]] bool foreground(std::size_t cell, float depth, const Vec3f& at) const noexcept;
-    void grow_piece(const DepthGrid& grid, std::size_t seed, std::uint16_t label) noexcept;
+    std::size_t grow_piece(const DepthGrid& grid, std::size_t seed, std::uint16_t label) noexcept;
     [[nodiscard]] bool like_a_person(const DepthGrid& grid, std::uint16_t label,
                                      Piece& out) const noexcept;
 
