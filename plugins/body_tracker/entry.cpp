@@ -20,6 +20,7 @@ using toile::RigidTransform;
 using toile::Vec3f;
 
 constexpr const char* kModel = "adult";
+constexpr const char* kForest = "adult.forest";
 
 class BodyTracker {
   public:
@@ -72,6 +73,9 @@ class BodyTracker {
         try {
             if (!model_) model_ = std::make_unique<body::FitModel>(body::find_avatar(kModel));
             job.progress(0.7);
+            if (!forest_)
+                forest_ = std::make_shared<tracker::Forest>(
+                    tracker::load_forest(sdk::library_folder() + "/" + kForest));
             start(std::max(1u, setup.max_people));
         } catch (const toile::Error& e) {
             throw sdk::Failure(TOILE_E_IO, e.what());
@@ -145,6 +149,7 @@ class BodyTracker {
         }
         tracker::TrackingOptions options;
         options.most_people = most_people;
+        options.person.forest = forest_;
         options.person.smoothing.on = switches_[0] != 0.0;
         options.person.learn_shape = switches_[1] != 0.0;
         options.person.recover = switches_[2] != 0.0;
@@ -203,6 +208,7 @@ class BodyTracker {
     sdk::Host host_;
     std::array<double, 3> switches_{1.0, 1.0, 1.0};
     std::unique_ptr<body::FitModel> model_;
+    std::shared_ptr<const tracker::Forest> forest_;
     std::unique_ptr<tracker::BodyTracking> tracking_;
     std::vector<Told> shapes_; ///< of tracking_->people()
     toile_stream stream_{};

@@ -108,16 +108,19 @@ PartLabel opposite_part(PartLabel label) noexcept {
     return static_cast<PartLabel>(value % 2 == 1 ? value + 1 : value - 1);
 }
 
-std::vector<PartLabel> label_vertices(const body::BodyModel& model) {
-    std::vector<PartLabel> labels(model.rest.positions.size());
+std::vector<PartLabel> label_vertices(const body::SkinWeights& skin, std::span<const Vec3f> rest) {
+    std::vector<PartLabel> labels(rest.size());
     for (std::size_t v = 0; v < labels.size(); ++v) {
-        const auto& weights = model.skin.weights[v];
+        const auto& weights = skin.weights[v];
         const auto heaviest = std::max_element(weights.begin(), weights.end()) - weights.begin();
-        const auto joint =
-            static_cast<Joint>(model.skin.joints[v][static_cast<std::size_t>(heaviest)]);
-        labels[v] = joint_part(joint, model.rest.positions[v].x() >= 0.0f);
+        const auto joint = static_cast<Joint>(skin.joints[v][static_cast<std::size_t>(heaviest)]);
+        labels[v] = joint_part(joint, rest[v].x() >= 0.0f);
     }
     return labels;
+}
+
+std::vector<PartLabel> label_vertices(const body::BodyModel& model) {
+    return label_vertices(model.skin, model.rest.positions);
 }
 
 } // namespace toile::body_tracker

@@ -3,6 +3,7 @@
 
 #include "body/body_model.h"
 
+#include <span>
 #include <vector>
 
 namespace toile::body_tracker {
@@ -42,7 +43,10 @@ inline constexpr int kPartCount = 22; ///< without `invalid`
 /// The same part of the other side; head and neck themselves.
 [[nodiscard]] PartLabel opposite_part(PartLabel label) noexcept;
 
-/// Label of each vertex (nv): its heaviest joint decides, on the trunk with the side of x = 0.
+/// Label of each vertex (nv): its heaviest joint decides, on the trunk with the side of x = 0 at
+/// rest.
+[[nodiscard]] std::vector<PartLabel> label_vertices(const body::SkinWeights& skin,
+                                                    std::span<const Vec3f> rest);
 [[nodiscard]] std::vector<PartLabel> label_vertices(const body::BodyModel& model);
 
 } // namespace toile::body_tracker

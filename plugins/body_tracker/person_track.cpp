@@ -21,37 +21,15 @@ constexpr float kLearnBelow = 0.3f;    // not explained: a wrong shape alone may
 constexpr int kFirstSteps = 2;
 constexpr int kTryTurnedEvery = 30; // frames
 constexpr int kTurnedSteps = 6;
-constexpr float kTurnedBetter = 0.85f, kTurnedBackwards = 1.25f, kTurnedAhead = 0.7f;
-constexpr float kWalks = 0.35f;       // m/s
+constexpr int kTryArmEvery = 24, kTryUneasyArmEvery = 6; // frames
+constexpr float kUneasy = 0.06f;                         // not explained
+constexpr float kTurnedBetter = 0.01f, kTurnedBackwards = -0.03f, kTurnedAhead = 0.03f; // badness
+constexpr float kWalks = 0.35f;                                                         // m/s
 constexpr float kDriftSeconds = 0.3f; // over which that is told
 constexpr int kBackwardsFrames = 8;
 constexpr std::size_t kFewCells = 40;
 constexpr float kUsualHeight = 1.70f, kShortest = 1.45f, kTallest = 2.05f; // metres
 constexpr float kFullView = 0.30f; // share of a part's skin seen that gives all confidence
-
-struct BoneEnds {
-    Joint from, to;
-    float beyond; ///< how much farther than `to`, in lengths
-    float radius_m;
-};
-constexpr std::array<BoneEnds, 16> kBones{{
-    {Joint::hips, Joint::chest, 0.0f, 0.16f},
-    {Joint::chest, Joint::neck, 0.0f, 0.16f},
-    {Joint::neck, Joint::head, 2.0f, 0.11f},
-    {Joint::left_shoulder, Joint::left_upper_arm, 0.0f, 0.08f},
-    {Joint::left_upper_arm, Joint::left_lower_arm, 0.0f, 0.06f},
-    {Joint::left_lower_arm, Joint::left_hand, 0.6f, 0.05f},
-    {Joint::right_shoulder, Joint::right_upper_arm, 0.0f, 0.08f},
-    {Joint::right_upper_arm, Joint::right_lower_arm, 0.0f, 0.06f},
-    {Joint::right_lower_arm, Joint::right_hand, 0.6f, 0.05f},
-    {Joint::hips, Joint::left_upper_leg, 0.0f, 0.12f},
-    {Joint::left_upper_leg, Joint::left_lower_leg, 0.0f, 0.09f},
-    {Joint::left_lower_leg, Joint::left_foot, 0.0f, 0.07f},
-    {Joint::left_foot, Joint::left_toes, 0.6f, 0.06f},
-    {Joint::right_upper_leg, Joint::right_lower_leg, 0.0f, 0.09f},
-    {Joint::right_lower_leg, Joint::right_foot, 0.0f, 0.07f},
-    {Joint::right_foot, Joint::right_toes, 0.6f, 0.06f},
-}};
 
 /// Radians that a joint may turn within a thirtieth of a second.
 double turn_of(Joint joint) noexcept {
@@ -76,40 +54,11 @@ double turn_of(Joint joint) noexcept {
 
 } // namespace
 
-void BoneDistance::set(const body::JointTransforms& joints) noexcept {
-    count_ = 0;
-    low_ = Vec3f::Constant(1e9f);
-    high_ = Vec3f::Constant(-1e9f);
-    for (const BoneEnds& ends : kBones) {
-        Bone& bone = bones_[count_++];
-        bone.from = joints[static_cast<std::size_t>(ends.from)].translation;
-        const Vec3f along = (1.0f + ends.beyond) *
-                            (joints[static_cast<std::size_t>(ends.to)].translation - bone.from);
-        bone.length = along.norm();
-        bone.along = body::unit_or(along, Vec3f::UnitY());
-        bone.radius = ends.radius_m;
-        low_ = low_.cwiseMin(bone.from.cwiseMin(bone.from + along));
-        high_ = high_.cwiseMax(bone.from.cwiseMax(bone.from + along));
-    }
-}
-
-float BoneDistance::operator()(const Vec3f& point) const noexcept {
-    const Vec3f outside = (low_ - point).cwiseMax(point - high_).cwiseMax(0.0f);
-    if (outside.norm() > 0.6f) return outside.norm();
-    float best = 1e9f;
-    for (std::size_t k = 0; k < count_; ++k) {
-        const Bone& bone = bones_[k];
-        const Vec3f off = point - bone.from;
-        const float at = std::clamp(off.dot(bone.along), 0.0f, bone.length);
-        best = std::min(best, (off - at * bone.along).norm() - bone.radius);
-    }
-    return best;
-}
-
 PersonTrack::PersonTrack(const body::FitModel& model, const GridCamera& camera,
                          const TrackOptions& options)
-    : options_(options), body_(model), registration_(body_, camera), search_(body_),
-      smoother_(options.smoothing), mask_(camera) {
+    : options_(options), body_(model), parts_(options.forest.get(), body_, camera),
+      registration_(body_, camera), search_(body_, parts_), smoother_(options.smoothing),
+      mask_(camera) {
     const body::FitLevel& level = body_.level();
     for (const Triangle& t : level.triangles) {
         std::array<float, kJointCount> weight{};
@@ -146,7 +95,7 @@ bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& u
     last_ = pose_;
     moving_ = sure_ = false;
     recovering_ = true;
-    failures_ = since_turned_ = 0;
+    failures_ = since_turned_ = since_arm_ = 0;
     unseen_s_ = astray_s_ = 0.0f;
     drift_.setZero();
     smoother_.reset();
@@ -161,18 +110,32 @@ void PersonTrack::try_turned(const SeenPerson& seen) noexcept {
     const float ahead = drift_.dot(pose_.rotations[0] * Vec3f::UnitZ());
     const bool backwards = ahead < -kWalks;
     if (++since_turned_ < (backwards ? kBackwardsFrames : kTryTurnedEvery) || failed()) return;
-    const float better = backwards        ? kTurnedBackwards
-                         : ahead > kWalks ? kTurnedAhead
-                                          : kTurnedBetter;
     since_turned_ = 0;
+    parts_.look(seen);
+    const float as_is = search_.rate(seen, pose_, registration_);
     body::Pose pose = PoseSearch::turned_around(pose_);
     for (int step = 0; step < kTurnedSteps; ++step)
         (void)registration_.step(seen, options_.registration, nullptr, pose);
-    const Agreement turned = registration_.judge(seen, pose);
-    if (turned.badness() < better * agreement_.badness()) {
+    const float turned = search_.rate(seen, pose, registration_);
+    const float margin = backwards        ? kTurnedBackwards
+                         : ahead > kWalks ? kTurnedAhead
+                                          : kTurnedBetter;
+    if (turned + margin < as_is) {
         pose_ = pose;
         moving_ = false;
     }
+    agreement_ = registration_.judge(seen, pose_);
+}
+
+/// An arm may have been lost where it was hidden or fast.
+void PersonTrack::try_arm(const SeenPerson& seen) noexcept {
+    if (++since_arm_ < (agreement_.unexplained > kUneasy ? kTryUneasyArmEvery : kTryArmEvery))
+        return;
+    since_arm_ = 0;
+    left_arm_ = !left_arm_;
+    parts_.look(seen);
+    if (search_.retry_arm(seen, left_arm_, options_.registration, pose_, registration_))
+        moving_ = false;
     agreement_ = registration_.judge(seen, pose_);
 }
 
@@ -201,13 +164,14 @@ void PersonTrack::recover(const SeenPerson& seen, const Vec3f& up) noexcept {
     recovering_ = true;
     const auto found = search_.advance(seen, up, sure_ ? &pose_ : nullptr, registration_);
     if (found) {
-        if (found->agreement.badness() < agreement_.badness()) {
+        if (found->badness < search_.rate(seen, pose_, registration_)) {
             pose_ = found->pose;
             moving_ = false;
             if (!sure_) smoother_.reset();
         }
         recovering_ = false;
         failures_ = 0;
+        since_turned_ = kTryTurnedEvery - kBackwardsFrames; // soon
     }
     agreement_ = registration_.judge(seen, pose_);
     if (!found || sure_) return;
@@ -243,6 +207,7 @@ void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noex
     } else {
         recovering_ = false;
         try_turned(seen);
+        try_arm(seen);
     }
     astray_s_ = agreement_.unexplained > kNobody ? astray_s_ + dt : 0.0f;
     if (astray_s_ > kAstraySeconds) stop();

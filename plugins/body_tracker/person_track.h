@@ -1,15 +1,19 @@
 // One person being followed from frame to frame.
 #pragma once
 
+#include "body_tracker/bone_distance.h"
 #include "body_tracker/pose_search.h"
 #include "body_tracker/pose_smoother.h"
 #include "body_tracker/shape_learner.h"
+
+#include <memory>
 
 namespace toile::body_tracker {
 
 enum class Following : std::uint8_t { invalid, detected, tracked, uncertain, lost };
 
 struct TrackOptions {
+    std::shared_ptr<const Forest> forest; ///< of body parts; null: depth alone decides
     RegistrationOptions registration;
     SmoothingOptions smoothing;
     int steps = 4;              ///< Gauss-Newton steps a frame at most
@@ -18,22 +22,6 @@ struct TrackOptions {
     bool recover = true;          ///< searches anew after a failure
     float failed_error_m = 0.06f; ///< mean distance, and ...
     float failed_share = 0.15f;   ///< ... share not explained, that mean a failure (P5 3.6)
-};
-
-/// Distance of a point from a person's bones, less their thickness, metres; camera frame.
-class BoneDistance {
-  public:
-    void set(const body::JointTransforms& joints) noexcept;
-    [[nodiscard]] float operator()(const Vec3f& point) const noexcept;
-
-  private:
-    struct Bone {
-        Vec3f from = Vec3f::Zero(), along = Vec3f::Zero();
-        float length = 0.0f, radius = 0.0f;
-    };
-    std::array<Bone, 20> bones_;
-    std::size_t count_ = 0;
-    Vec3f low_ = Vec3f::Zero(), high_ = Vec3f::Zero();
 };
 
 /// Made once and reused for person after person; per frame nothing allocates once the shape is
@@ -85,10 +73,12 @@ class PersonTrack {
     void rate_joints(const SeenPerson& seen) noexcept;
     void show(float dt) noexcept;
     void try_turned(const SeenPerson& seen) noexcept;
+    void try_arm(const SeenPerson& seen) noexcept;
     [[nodiscard]] bool failed() const noexcept;
 
     TrackOptions options_;
     TrackedBody body_;
+    PartsView parts_;
     Registration registration_;
     PoseSearch search_;
     ShapeLearner learner_;
@@ -106,6 +96,8 @@ class PersonTrack {
     bool recovering_ = false;
     bool sure_ = false;           ///< that it is somebody: the first search is over
     int since_turned_ = 0;        ///< frames since the other facing was tried
+    int since_arm_ = 0;           ///< and since an arm was
+    bool left_arm_ = false;       ///< which that was
     Vec3f drift_ = Vec3f::Zero(); ///< of the hips, m/s, over some frames
     float unseen_s_ = 0.0f;
     float astray_s_ = 0.0f; ///< how long the pose has explained little

@@ -16,9 +16,15 @@ constexpr std::size_t kKept = 4;    // candidates of the library
 constexpr std::size_t kLimbs = 3;   // whose limbs are tried one by one
 constexpr std::size_t kRefined = 2; // and that are moved on to the end
 constexpr int kQuickRounds = 3;
+constexpr int kArmRounds = 5;
+constexpr float kWorthMoving =
+    0.02f; // badness that an arm not moved onto the picture may have more
+constexpr float kArmBetter = 0.035f;
 constexpr int kRounds = 8;
-constexpr float kThickness = 0.10f; // metres from the seen surface to the body's middle
-constexpr float kHeadTops = 2.1f;   // the crown is so many necks above the head's joint
+constexpr float kPartsWeight = 0.5f; // of what the forest says
+constexpr float kSeesFaces = 0.05f;  // half of how much more readily it takes a person to face it
+constexpr float kThickness = 0.10f;  // metres from the seen surface to the body's middle
+constexpr float kHeadTops = 2.1f;    // the crown is so many necks above the head's joint
 
 RegistrationOptions wide_options() {
     RegistrationOptions out;
@@ -58,7 +64,7 @@ Extent extent_of(const SeenPerson& seen, const Vec3f& up) noexcept {
 
 } // namespace
 
-PoseSearch::PoseSearch(const TrackedBody& body) : body_(body) {
+PoseSearch::PoseSearch(const TrackedBody& body, PartsView& parts) : body_(body), parts_(parts) {
     const body::Skeleton& skeleton = body.model().space().model().skeleton;
     for (const auto arms : {body::usual_arms(), body::single_arms()})
         for (const body::ArmPose& arm : arms)
@@ -98,9 +104,19 @@ body::Pose PoseSearch::turned_around(const body::Pose& pose) noexcept {
     return out;
 }
 
+float PoseSearch::rate(const SeenPerson& seen, const body::Pose& pose, Registration& registration,
+                       bool whole) const noexcept {
+    const Agreement agreement = registration.judge(seen, pose, whole);
+    if (!parts_.useful()) return agreement.badness();
+    const Vec3f to_camera = body::unit_or(-pose.hips_position, Vec3f::UnitZ());
+    const float facing = to_camera.dot(pose.rotations[0] * Vec3f::UnitZ());
+    const float support = parts_.support(registration.drawing()) - kSeesFaces * facing;
+    return agreement.badness() - kPartsWeight * support;
+}
+
 void PoseSearch::keep(const SeenPerson& seen, const body::Pose& pose,
                       Registration& registration) noexcept {
-    const Candidate candidate{pose, registration.judge(seen, pose, false).badness()};
+    const Candidate candidate{pose, rate(seen, pose, registration, false)};
     if (best_.size() == kKept && candidate.badness >= best_.back().badness) return;
     const auto at = std::upper_bound(
         best_.begin(), best_.end(), candidate,
@@ -112,7 +128,7 @@ void PoseSearch::keep(const SeenPerson& seen, const body::Pose& pose,
 void PoseSearch::improve_limbs(const SeenPerson& seen, Candidate& candidate,
                                Registration& registration) const noexcept {
     const auto offer = [&](const body::Pose& pose) {
-        const float badness = registration.judge(seen, pose, false).badness();
+        const float badness = rate(seen, pose, registration, false);
         if (badness < candidate.badness) candidate = {pose, badness};
     };
     for (const bool left : {true, false})
@@ -123,13 +139,31 @@ void PoseSearch::improve_limbs(const SeenPerson& seen, Candidate& candidate,
             offer(body::with_leg(candidate.pose, left, leg));
 }
 
+bool PoseSearch::retry_arm(const SeenPerson& seen, bool left, const RegistrationOptions& options,
+                           body::Pose& pose, Registration& registration) const noexcept {
+    const float quick = rate(seen, pose, registration, false);
+    Candidate best{pose, quick + kWorthMoving};
+    for (const body::Pose& arms : arms_) {
+        const body::Pose other = body::with_arm(pose, left, arms);
+        const float badness = rate(seen, other, registration, false);
+        if (badness < best.badness) best = {other, badness};
+    }
+    if (best.badness == quick + kWorthMoving) return false;
+    const float as_is = rate(seen, pose, registration);
+    for (int round = 0; round < kArmRounds; ++round)
+        (void)registration.step(seen, options, nullptr, best.pose);
+    if (rate(seen, best.pose, registration) + kArmBetter > as_is) return false;
+    pose = best.pose;
+    return true;
+}
+
 void PoseSearch::refine(const SeenPerson& seen, Candidate& candidate, int rounds,
-                        Registration& registration) noexcept {
+                        Registration& registration) const noexcept {
     static const RegistrationOptions options = wide_options();
     body::Pose pose = candidate.pose;
     for (int round = 0; round < rounds; ++round)
         (void)registration.step(seen, options, nullptr, pose);
-    const float badness = registration.judge(seen, pose).badness();
+    const float badness = rate(seen, pose, registration);
     if (badness < candidate.badness) candidate = {pose, badness};
 }
 
@@ -160,6 +194,7 @@ void PoseSearch::sort() noexcept {
 std::optional<FoundPose> PoseSearch::advance(const SeenPerson& seen, const Vec3f& up,
                                              const body::Pose* hint,
                                              Registration& registration) noexcept {
+    parts_.look(seen);
     if (stage_ == Stage::library) {
         look_through_library(seen, up, hint, registration);
         stage_ = Stage::limbs;
@@ -177,12 +212,13 @@ std::optional<FoundPose> PoseSearch::advance(const SeenPerson& seen, const Vec3f
     best_.resize(std::min(kRefined, best_.size()));
     best_.push_back({turned_around(best_.front().pose), 0.0f});
     for (Candidate& candidate : best_) {
-        candidate.badness = registration.judge(seen, candidate.pose).badness();
+        candidate.badness = rate(seen, candidate.pose, registration);
         refine(seen, candidate, kRounds, registration);
     }
     sort();
     stage_ = Stage::library;
-    return FoundPose{best_.front().pose, registration.judge(seen, best_.front().pose)};
+    const float badness = rate(seen, best_.front().pose, registration);
+    return FoundPose{best_.front().pose, registration.judge(seen, best_.front().pose), badness};
 }
 
 } // namespace toile::body_tracker

@@ -2,7 +2,7 @@
 // the best ones moved onto it. The work is spread over three frames, so that none takes long.
 #pragma once
 
-#include "body_tracker/registration.h"
+#include "body_tracker/parts_view.h"
 
 #include <optional>
 #include <vector>
@@ -12,12 +12,14 @@ namespace toile::body_tracker {
 struct FoundPose {
     body::Pose pose;
     Agreement agreement;
+    float badness = 0.0f; ///< as `rate` has it
 };
 
 /// Keeps its work space; allocates only when made.
 class PoseSearch {
   public:
-    explicit PoseSearch(const TrackedBody& body);
+    /// `parts` is asked once a frame in which a search goes on; must outlive it.
+    PoseSearch(const TrackedBody& body, PartsView& parts);
 
     /// Begins anew.
     void restart() noexcept { stage_ = Stage::library; }
@@ -28,6 +30,16 @@ class PoseSearch {
     [[nodiscard]] std::optional<FoundPose> advance(const SeenPerson& seen, const Vec3f& up,
                                                    const body::Pose* hint,
                                                    Registration& registration) noexcept;
+
+    /// How badly a pose explains the grid and what the forest said when `parts` last looked; lower
+    /// is better. `registration` is left with the pose judged.
+    [[nodiscard]] float rate(const SeenPerson& seen, const body::Pose& pose,
+                             Registration& registration, bool whole = true) const noexcept;
+
+    /// Tries usual ways of holding one arm in place of the pose's; true when `pose` was changed for
+    /// a better one. `parts` must have looked.
+    bool retry_arm(const SeenPerson& seen, bool left, const RegistrationOptions& options,
+                   body::Pose& pose, Registration& registration) const noexcept;
 
     /// The best pose so far, for use before the search is over; after the first frame of one.
     [[nodiscard]] const body::Pose& provisional() const noexcept { return best_.front().pose; }
@@ -52,11 +64,12 @@ class PoseSearch {
     void keep(const SeenPerson& seen, const body::Pose& pose, Registration& registration) noexcept;
     void improve_limbs(const SeenPerson& seen, Candidate& candidate,
                        Registration& registration) const noexcept;
-    static void refine(const SeenPerson& seen, Candidate& candidate, int rounds,
-                       Registration& registration) noexcept;
+    void refine(const SeenPerson& seen, Candidate& candidate, int rounds,
+                Registration& registration) const noexcept;
     void sort() noexcept;
 
     const TrackedBody& body_;
+    PartsView& parts_;
     std::vector<body::Pose> arms_; ///< ways of holding both arms
     std::vector<Candidate> best_;  ///< best first
     Stage stage_ = Stage::library;

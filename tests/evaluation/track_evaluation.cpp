@@ -38,7 +38,7 @@ constexpr float kSeenTolerance = 0.06f; // metres of noise
 constexpr float kVisibleShare = 0.2f;
 
 struct Settings {
-    fs::path model, people, motions, json, pictures;
+    fs::path model, people, motions, json, pictures, forest;
     std::size_t count = 1000, first = 0;
     double seconds = 8.0;
     std::string noise = "usual", only;
@@ -302,7 +302,10 @@ struct Case {
 
 class Evaluation {
   public:
-    explicit Evaluation(const Settings& settings) : settings_(settings), model_(settings.model) {}
+    explicit Evaluation(const Settings& settings) : settings_(settings), model_(settings.model) {
+        if (!settings.forest.empty())
+            forest_ = std::make_shared<tracker::Forest>(tracker::load_forest(settings.forest));
+    }
 
     Sums run(const fs::path& folder, const body::TestPerson& person, const Case& one,
              std::uint64_t seed) {
@@ -337,6 +340,7 @@ class Evaluation {
         tracker::TrackingOptions options;
         options.person.learn_shape = settings_.learn_shape;
         options.person.smoothing.on = settings_.smooth;
+        options.person.forest = forest_;
         tracker::BodyTracking tracking(model_, simulator.camera(0).intrinsics(),
                                        simulator.camera(0).reported_pose(), options);
         const Visibility visibility(person);
@@ -419,6 +423,7 @@ class Evaluation {
 
     const Settings& settings_;
     body::FitModel model_;
+    std::shared_ptr<const tracker::Forest> forest_;
 };
 
 void run(const Settings& settings) {
@@ -473,6 +478,7 @@ int main(int argc, char** argv) {
     app.add_option("--noise", settings.noise);
     app.add_option("--only", settings.only);
     app.add_option("--seed", settings.seed);
+    app.add_option("--forest", settings.forest, "plugins/body_tracker/adult.forest");
     app.add_option("--json", settings.json);
     app.add_option("--pictures", settings.pictures);
     app.add_option("--picture-every", settings.picture_every);
