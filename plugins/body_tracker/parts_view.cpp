@@ -52,7 +52,8 @@ float PartsView::support(const Drawing& drawing) const noexcept {
     std::uint32_t sum = 0;
     for (const Cell& cell : cells_) {
         const DrawnCell& drawn = drawing.cells[cell.index];
-        if (drawn.depth != 0.0f) sum += cell.share[parts_[static_cast<std::size_t>(drawn.triangle)]];
+        if (drawn.depth != 0.0f)
+            sum += cell.share[parts_[static_cast<std::size_t>(drawn.triangle)]];
     }
     return static_cast<float>(sum) / (255.0f * static_cast<float>(cells_.size()));
 }

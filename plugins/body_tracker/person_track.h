@@ -20,8 +20,8 @@ struct TrackOptions {
     double settled_rad = 0.012; ///< a step that turns no joint farther is the last
     bool learn_shape = true;
     bool recover = true;          ///< searches anew after a failure
-    float failed_error_m = 0.06f; ///< mean distance, and ...
-    float failed_share = 0.15f;   ///< ... share not explained, that mean a failure (P5 3.6)
+    float failed_error_m = 0.06f; ///< mean distance that means a failure (P5 3.6), and ...
+    float failed_share = 0.11f;   ///< ... share not explained (P5's 0.15 overlooks single limbs)
 };
 
 /// Made once and reused for person after person; per frame nothing allocates once the shape is

@@ -1,8 +1,8 @@
 #include "body_tracker/parts_view.h"
 
+#include "body/usual_poses.h"
 #include "body_tracker/pose_search.h"
 #include "core/error.h"
-#include "body/usual_poses.h"
 #include "self_seen.h"
 
 namespace toile::body_tracker {
@@ -63,8 +63,8 @@ TEST(PoseSearch, FindsALostArm) {
     for (const bool left : {true, false}) {
         body::Pose pose = body::with_arm(out, left, hanging);
         ASSERT_TRUE(search.retry_arm(self.seen(), left, {}, pose, registration));
-        const auto hand = static_cast<std::size_t>(left ? body::Joint::left_hand
-                                                        : body::Joint::right_hand);
+        const auto hand =
+            static_cast<std::size_t>(left ? body::Joint::left_hand : body::Joint::right_hand);
         const auto at = [&](const body::Pose& p) {
             return body::forward_kinematics(skeleton, p)[hand].translation;
         };
