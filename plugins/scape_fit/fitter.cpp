@@ -1,6 +1,7 @@
 #include "scape_fit/fitter.h"
 
 #include "core/error.h"
+#include "scape_fit/floor_contact.h"
 #include "scape_fit/skin_tone.h"
 
 #include <algorithm>
@@ -40,8 +41,6 @@ constexpr double kOneSideWeight = 0.03; // of the prior, see FitOptions
 constexpr std::size_t kCoarsePoints = 3000;
 constexpr std::size_t kMediumPoints = 16000;
 constexpr float kOutlinePixel = 3e-4f; // m^2 that a pixel of the outline counts as
-constexpr float kFootReach = 0.05f;    // metres: a higher foot is lifted
-constexpr float kFootWeight = 0.004f;  // m^2 that a sole counts as
 
 /// Every n-th point, areas made up for it.
 Observation fewer(const Observation& from, std::size_t count) {
@@ -85,31 +84,6 @@ double cost(std::span<const Association> associations, double far) {
         area += a.observed_area;
     }
     return std::sqrt(squares / std::max(area, 1e-9));
-}
-
-/// Feet that are near the floor stand on it, and nothing is below.
-void stand_on(const FitLevel& level, const PosedLevel& posed, const geometry::Plane& floor,
-              Association& out) {
-    out.pairs.clear();
-    std::array<VertexPair, 2> lowest;
-    for (VertexPair& pair : lowest)
-        pair.distance = kFootReach;
-    for (std::uint32_t v = 0; v < level.vertices.size(); ++v) {
-        VertexPair pair;
-        pair.vertex = v;
-        pair.kind = PairKind::floor;
-        pair.normal = floor.normal;
-        pair.distance = floor.normal.dot(posed.positions[v]) - floor.offset;
-        pair.weight = kFootWeight;
-        for (std::size_t side = 0; side < 2; ++side) {
-            const auto foot = static_cast<std::size_t>(side == 0 ? body::Joint::left_foot
-                                                                 : body::Joint::right_foot);
-            if (level.below[v][foot] > 0.5f && pair.distance < lowest[side].distance)
-                lowest[side] = pair;
-        }
-    }
-    for (const VertexPair& pair : lowest)
-        if (pair.weight > 0.0f && pair.distance > -2.0f * kFootReach) out.pairs.push_back(pair);
 }
 
 } // namespace
