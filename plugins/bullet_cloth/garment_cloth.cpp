@@ -42,13 +42,13 @@ std::vector<float> inverse_masses(std::span<const float> mass, std::span<const f
     return inverse;
 }
 
-ContactSettings contact_settings(const GarmentInput& input, const Settings& settings) {
+cloth::ContactSettings contact_settings(const GarmentInput& input, const Settings& settings) {
     // An outer layer keeps further out, so that it lies over the inner one.
     constexpr float kBetweenLayers = 0.002f;
     const float thickness = std::min(input.fabric.thickness, 0.01f);
     const float layers =
         static_cast<float>(std::min(input.layer, 8u)) * (thickness + kBetweenLayers);
-    ContactSettings contact;
+    cloth::ContactSettings contact;
     contact.offset = 0.5f * thickness + static_cast<float>(settings.margin) + layers;
     contact.centre_offset = 0.5f * contact.offset + 0.5f * layers;
     contact.friction = input.fabric.friction * static_cast<float>(settings.friction_scale);
@@ -194,7 +194,7 @@ void GarmentCloth::update_velocities(float substep, bool damp) noexcept {
 }
 
 void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
-    ContactSettings still = contact_;
+    cloth::ContactSettings still = contact_;
     still.friction = 0.0f;
     contacts_.refresh(body, x_, v_, {0.0f, since_last, 0.0f, period_, 0, 1, true}, still);
     std::copy(x_.begin(), x_.end(), q_.begin());

@@ -1,10 +1,14 @@
 // One garment in the cloth world: its particles, springs, contacts, targets.
 #pragma once
 
+#include "bullet_cloth/link_solver.h"
 #include "bullet_cloth/settings.h"
-#include "bullet_cloth/skin_cover.h"
+#include "cloth/skin_cover.h"
 
 namespace toile::bullet_cloth {
+
+using cloth::BodyContacts;
+using cloth::MovingBody;
 
 /// What never changes of a garment. Views are borrowed for the call.
 struct GarmentInput {
@@ -62,14 +66,14 @@ class GarmentCloth {
 
     Settings settings_;
     Fabric fabric_;
-    ContactSettings contact_;
+    cloth::ContactSettings contact_;
     std::vector<Vec3f> start_;
     ClothModel model_;
     std::vector<float> attachment_;
     std::vector<float> inverse_mass_; ///< (nv) 1/kg, 0: held
     LinkSolver links_;
-    Contacts contacts_;
-    SkinCover cover_;
+    BodyContacts contacts_;
+    cloth::SkinCover cover_;
     std::vector<Vec4> x_, q_, v_; ///< positions, those at the start of the substep, velocities
     std::vector<Vec4> target_before_, target_after_;
     float leash_ = 0.0f;

@@ -1,16 +1,13 @@
-#include "bullet_cloth/contacts.h"
+#include "cloth/body_contacts.h"
 
-#include "abi/body.h"
 #include "core/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
 namespace {
-
-static_assert(kBodyJoints == TOILE_JOINT_COUNT);
 
 /// Parent of each joint in the order of abi/body.h; the hips are their own.
 constexpr std::array<std::uint8_t, kBodyJoints> kParent{0,  0,  1,  2, 3,  4,  3,  6, 7,  8,  3,
@@ -88,11 +85,11 @@ bool lifts(const MovingBody& body, const SurfacePoint& own, const SurfacePoint& 
 
 } // namespace
 
-const Contacts::Plane Contacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), Vec4::Zero()};
+const BodyContacts::Plane BodyContacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), Vec4::Zero()};
 
-Contacts::Contacts(std::span<const Triangle> triangles, std::size_t vertex_count,
-                   std::span<const std::array<std::uint16_t, 4>> joints,
-                   std::span<const std::array<float, 4>> weights)
+BodyContacts::BodyContacts(std::span<const Triangle> triangles, std::size_t vertex_count,
+                           std::span<const std::array<std::uint16_t, 4>> joints,
+                           std::span<const std::array<float, 4>> weights)
     : triangles_(triangles.begin(), triangles.end()), vertex_count_(vertex_count) {
     if (joints.size() != vertex_count || weights.size() != vertex_count) {
         throw Error("garment: " + std::to_string(joints.size()) + " joint rows and " +
@@ -126,7 +123,7 @@ Contacts::Contacts(std::span<const Triangle> triangles, std::size_t vertex_count
     }
 }
 
-void Contacts::bind(const MovingBody& rest_body, std::span<const Vec3f> start) {
+void BodyContacts::bind(const MovingBody& rest_body, std::span<const Vec3f> start) {
     constexpr float kAnywhere = 1e4f; // m
     for (std::size_t s = 0; s < anchor_.size(); ++s) {
         Vec3f at = Vec3f::Zero();
@@ -156,20 +153,20 @@ void Contacts::bind(const MovingBody& rest_body, std::span<const Vec3f> start) {
     reset();
 }
 
-void Contacts::reset() noexcept {
+void BodyContacts::reset() noexcept {
     std::copy(anchor_.begin(), anchor_.end(), own_triangle_.begin());
     std::fill(other_triangle_.begin(), other_triangle_.end(), kNone);
     std::fill(own_plane_.begin(), own_plane_.end(), kNowhere);
 }
 
-JointMask Contacts::mask_for(std::size_t sample, const MovingBody& body,
-                             std::uint32_t triangle) const noexcept {
+JointMask BodyContacts::mask_for(std::size_t sample, const MovingBody& body,
+                                 std::uint32_t triangle) const noexcept {
     const JointMask mask = mask_[sample];
     return ((mask >> body.joint_of(triangle)) & 1u) != 0 ? mask : ~mask;
 }
 
-Contacts::Plane Contacts::plane_at(const MovingBody& body, const Vec4& p,
-                                   const SurfacePoint& at) noexcept {
+BodyContacts::Plane BodyContacts::plane_at(const MovingBody& body, const Vec4& p,
+                                           const SurfacePoint& at) noexcept {
     constexpr float kNear = 0.004f; // m, where the direction to the surface says little
     constexpr float kSlant = 0.5f;
     Plane plane{body.normal_at(at), body.velocity_at(at)};
@@ -184,9 +181,9 @@ Contacts::Plane Contacts::plane_at(const MovingBody& body, const Vec4& p,
 }
 
 /// Is another part, or another place of its own, nearer than where the sample has been?
-void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
-                           const ContactSettings& settings, float period,
-                           SurfacePoint& own) noexcept {
+void BodyContacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
+                               const ContactSettings& settings, float period,
+                               SurfacePoint& own) noexcept {
     constexpr float kApart = 0.02f;     // m, between two places worth two contacts
     constexpr float kOutside = -0.002f; // m, a new place is first met from outside
     const float own_distance = signed_distance(body, p, own);
@@ -227,9 +224,9 @@ void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sa
     }
 }
 
-void Contacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
-                            const SurfacePoint& own, const ContactSettings& settings,
-                            float period) noexcept {
+void BodyContacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
+                                const SurfacePoint& own, const ContactSettings& settings,
+                                float period) noexcept {
     own_triangle_[sample] = own.triangle;
     own_plane_[sample] = plane_at(body, p, own);
     drift_[sample] = 0.0f;
@@ -259,8 +256,8 @@ void Contacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t s
 
 /// Has the sample slid so far over the skin that its plane says too little? A plane moves with the
 /// skin; 3 mm beside its point, skin bent with a radius of 3 cm is 0.15 mm off it.
-bool Contacts::has_drifted(const MovingBody& body, const Vec4& v, std::size_t sample,
-                           float seconds) noexcept {
+bool BodyContacts::has_drifted(const MovingBody& body, const Vec4& v, std::size_t sample,
+                               float seconds) noexcept {
     constexpr float kFar = 0.003f;   // m
     constexpr float kTurning = 0.2f; // share of its speed that a part may turn a plane by
     const Plane& plane = own_plane_[sample];
@@ -270,9 +267,9 @@ bool Contacts::has_drifted(const MovingBody& body, const Vec4& v, std::size_t sa
     return drift_[sample] > kFar;
 }
 
-void Contacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v,
-                              std::uint32_t vertex, const Refresh& when,
-                              const ContactSettings& settings) noexcept {
+void BodyContacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v,
+                                  std::uint32_t vertex, const Refresh& when,
+                                  const ContactSettings& settings) noexcept {
     const bool turn = !when.last && vertex % when.phases == when.phase;
     Plane& plane = own_plane_[vertex];
     plane.normal.w() += plane.velocity.w() * when.since_last;
@@ -293,9 +290,9 @@ void Contacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4&
     place_sample(body, p, vertex, own, settings, when.period);
 }
 
-void Contacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v,
-                              std::size_t triangle, const Refresh& when,
-                              const ContactSettings& settings) noexcept {
+void BodyContacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v,
+                                  std::size_t triangle, const Refresh& when,
+                                  const ContactSettings& settings) noexcept {
     const std::size_t sample = vertex_count_ + triangle;
     Plane& plane = own_plane_[sample];
     plane.normal.w() += plane.velocity.w() * when.since_last;
@@ -326,9 +323,9 @@ void Contacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4&
     place_sample(body, p, sample, own, settings, when.period);
 }
 
-void Contacts::list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
-                            std::vector<ActivePlane>& own,
-                            std::vector<ActivePlane>& other) noexcept {
+void BodyContacts::list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
+                                std::vector<ActivePlane>& own,
+                                std::vector<ActivePlane>& other) noexcept {
     const Plane& plane = own_plane_[sample];
     if (is_near(plane.normal, plane.velocity, p, v, kTouching, until_next)) {
         own.push_back({static_cast<std::uint32_t>(sample), plane});
@@ -338,8 +335,8 @@ void Contacts::list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, fl
     }
 }
 
-void Contacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
-                       const Refresh& when, const ContactSettings& settings) noexcept {
+void BodyContacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
+                           const Refresh& when, const ContactSettings& settings) noexcept {
     own_vertices_.clear();
     other_vertices_.clear();
     own_centres_.clear();
@@ -358,9 +355,9 @@ void Contacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::spa
     }
 }
 
-void Contacts::push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
-                           float since, float substep,
-                           const ContactSettings& settings) const noexcept {
+void BodyContacts::push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
+                               float since, float substep,
+                               const ContactSettings& settings) const noexcept {
     Vec4& x = particles.x[vertex];
     const float height = plane.normal.dot(x) - plane.normal.w() - plane.velocity.w() * since;
     const float push = settings.offset - height;
@@ -386,9 +383,9 @@ void Contacts::push_vertex(const Particles& particles, std::uint32_t vertex, con
     }
 }
 
-void Contacts::push_centre(const Particles& particles, const Triangle& corner, const Plane& plane,
-                           float since, float substep,
-                           const ContactSettings& settings) const noexcept {
+void BodyContacts::push_centre(const Particles& particles, const Triangle& corner,
+                               const Plane& plane, float since, float substep,
+                               const ContactSettings& settings) const noexcept {
     const Vec4 x = particles.x[corner[0]] + particles.x[corner[1]] + particles.x[corner[2]];
     const float height = plane.normal.dot(x) / 3.0f - plane.normal.w() - plane.velocity.w() * since;
     const float push = settings.centre_offset - height;
@@ -408,8 +405,8 @@ void Contacts::push_centre(const Particles& particles, const Triangle& corner, c
     }
 }
 
-void Contacts::resolve(const Particles& particles, float since, float substep,
-                       const ContactSettings& settings) const noexcept {
+void BodyContacts::resolve(const Particles& particles, float since, float substep,
+                           const ContactSettings& settings) const noexcept {
     for (const std::vector<ActivePlane>* centres : {&other_centres_, &own_centres_}) {
         for (const ActivePlane& active : *centres) {
             push_centre(particles, triangles_[active.sample - vertex_count_], active.plane, since,
@@ -423,4 +420,4 @@ void Contacts::resolve(const Particles& particles, float since, float substep,
     }
 }
 
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth

@@ -1,4 +1,4 @@
-#include "bullet_cloth/moving_body.h"
+#include "cloth/moving_body.h"
 
 #include "core/error.h"
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
 namespace {
 
 Vec4 to_vec4(const Vec3f& p) {
@@ -223,4 +223,4 @@ Vec4 MovingBody::velocity_at(const SurfacePoint& at) const noexcept {
     return sum * per_second_;
 }
 
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth

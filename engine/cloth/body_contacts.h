@@ -2,9 +2,9 @@
 // over, the plane that stands for it between two refreshes, and the push with friction.
 #pragma once
 
-#include "bullet_cloth/moving_body.h"
+#include "cloth/moving_body.h"
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
 
 struct ContactSettings {
     float offset = 0.004f;        ///< m, vertices are kept this far out
@@ -37,12 +37,12 @@ struct Particles {
 /// is kept outside of these however deep it got. Besides it may have one *other* place, a part
 /// that came near (a hand over the skirt, the second thigh), first met from outside. Where
 /// the body runs into itself and no room is left between both, the own place wins.
-class Contacts {
+class BodyContacts {
   public:
     /// \throw Error when joint rows do not match or no part of the body fits a vertex
-    Contacts(std::span<const Triangle> triangles, std::size_t vertex_count,
-             std::span<const std::array<std::uint16_t, 4>> joints,
-             std::span<const std::array<float, 4>> weights);
+    BodyContacts(std::span<const Triangle> triangles, std::size_t vertex_count,
+                 std::span<const std::array<std::uint16_t, 4>> joints,
+                 std::span<const std::array<float, 4>> weights);
 
     /// Finds each sample's place on the body at rest; `start` (nv) as bound to it.
     /// \throw Error when the body has no part that a vertex could lie on
@@ -114,4 +114,4 @@ class Contacts {
     std::vector<ActivePlane> own_vertices_, other_vertices_, own_centres_, other_centres_;
 };
 
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth
