@@ -3,6 +3,7 @@
 
 #include "bullet_cloth/link_solver.h"
 #include "bullet_cloth/settings.h"
+#include "cloth/garment_input.h"
 #include "cloth/skin_cover.h"
 
 namespace toile::bullet_cloth {
@@ -10,15 +11,7 @@ namespace toile::bullet_cloth {
 using cloth::BodyContacts;
 using cloth::MovingBody;
 
-/// What never changes of a garment. Views are borrowed for the call.
-struct GarmentInput {
-    ClothMesh mesh; ///< positions: as bound to the body at rest
-    Fabric fabric;
-    std::span<const std::array<std::uint16_t, 4>> joints; ///< (nv)
-    std::span<const std::array<float, 4>> weights;        ///< (nv)
-    std::span<const float> attachment; ///< (nv) 0 free .. 1 held to its target; or empty
-    unsigned layer = 0;                ///< 0 next to the skin
-};
+using cloth::GarmentInput;
 
 /// A stretch of one step: substeps [first, last) of `count`, over a body placed at one moment.
 struct Interval {
