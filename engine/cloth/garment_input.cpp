@@ -33,8 +33,7 @@ std::vector<float> inverse_masses(std::span<const float> mass, std::span<const f
     return inverse;
 }
 
-ContactSettings contact_settings(const GarmentInput& input, float margin,
-                                 float friction_scale) {
+ContactSettings contact_settings(const GarmentInput& input, float margin, float friction_scale) {
     // An outer layer keeps further out, so that it lies over the inner one.
     constexpr float kBetweenLayers = 0.002f;
     const float thickness = std::min(input.fabric.thickness, 0.01f);

@@ -35,10 +35,9 @@ std::vector<Side> sorted_sides(const ClothMesh& mesh, const Fabric& fabric) {
             const Vec2f along = corner[to] - corner[from];
             const Vec2f up = corner[top] - corner[from];
             const float length = along.norm();
-            sides.push_back({mesh.triangles[t][from], mesh.triangles[t][to],
-                             mesh.triangles[t][top], length, up.dot(along) / twice,
-                             (along - up).dot(along) / twice, 0.5f * twice,
-                             cloth::directional_rigidity(fabric, along / length)});
+            sides.push_back({mesh.triangles[t][from], mesh.triangles[t][to], mesh.triangles[t][top],
+                             length, up.dot(along) / twice, (along - up).dot(along) / twice,
+                             0.5f * twice, cloth::directional_rigidity(fabric, along / length)});
         }
     }
     std::stable_sort(sides.begin(), sides.end(), [](const Side& l, const Side& r) {

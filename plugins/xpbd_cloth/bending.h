@@ -7,7 +7,8 @@ namespace toile::xpbd_cloth {
 
 /// A flat material folded about an edge stores 3 l^2 B / (2 (A1 + A2)) theta^2. For cloth, which
 /// keeps its lengths, that is quadratic in the positions (Bergou et al. 2006, isometric bending):
-///     C = sum_i k_i x_i  (a vector, of length l theta for small angles),  compliance (A1 + A2) / (3 B).
+///     C = sum_i k_i x_i  (a vector, of length l theta for small angles),  compliance (A1 + A2) /
+///     (3 B).
 /// Its gradient does not change, so a hinge costs four rows, one dot product and no root.
 class Bending {
   public:

@@ -69,9 +69,12 @@ void ClothWorld::arrange() {
     for (Entry& entry : garments_) {
         const std::size_t rows = entry.cloth.vertex_count() + 1;
         if (!entry.fresh) {
-            std::copy_n(x_.begin() + std::ptrdiff_t(entry.first), rows, x.begin() + std::ptrdiff_t(first));
-            std::copy_n(q_.begin() + std::ptrdiff_t(entry.first), rows, q.begin() + std::ptrdiff_t(first));
-            std::copy_n(v_.begin() + std::ptrdiff_t(entry.first), rows, v.begin() + std::ptrdiff_t(first));
+            std::copy_n(x_.begin() + std::ptrdiff_t(entry.first), rows,
+                        x.begin() + std::ptrdiff_t(first));
+            std::copy_n(q_.begin() + std::ptrdiff_t(entry.first), rows,
+                        q.begin() + std::ptrdiff_t(first));
+            std::copy_n(v_.begin() + std::ptrdiff_t(entry.first), rows,
+                        v.begin() + std::ptrdiff_t(first));
         }
         entry.first = first;
         first += rows;

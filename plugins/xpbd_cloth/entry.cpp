@@ -1,11 +1,11 @@
 // Kind toile.cloth/1 over xpbd_cloth/cloth_world.h.
 #include "abi/body.h"
-#include "xpbd_cloth/cloth_world.h"
 #include "sdk/cloth.h"
 #include "sdk/host.h"
 #include "sdk/parameters.h"
 #include "sdk/plugin.h"
 #include "sdk/views.h"
+#include "xpbd_cloth/cloth_world.h"
 
 namespace {
 
@@ -62,8 +62,8 @@ class XpbdCloth {
     static constexpr Settings defaults{};
     static constexpr std::array parameters{
         sdk::Parameter{"substep_rate", TOILE_PARAMETER_REAL, "1/s",
-                       "substeps a second; more: less stretch, more time; 0: from the mesh", 0, 10000,
-                       defaults.substep_rate},
+                       "substeps a second; more: less stretch, more time; 0: from the mesh", 0,
+                       10000, defaults.substep_rate},
         sdk::Parameter{"wave_speed", TOILE_PARAMETER_REAL, "m/s",
                        "chooses the substeps: mesh edges that a pull travels in a second", 1, 200,
                        defaults.wave_speed},
@@ -100,10 +100,10 @@ class XpbdCloth {
 
     double& parameter(std::size_t index) {
         const std::array<double*, parameters.size()> all{
-            &settings_.substep_rate,  &settings_.wave_speed,     &settings_.contact_rate,
-            &settings_.margin,        &settings_.strain_limit,   &settings_.leash,
-            &settings_.pull_rate,     &settings_.air_drag,       &settings_.damping_scale,
-            &settings_.friction_scale, &settings_.clean_passes,  &settings_.self_contact,
+            &settings_.substep_rate,   &settings_.wave_speed,   &settings_.contact_rate,
+            &settings_.margin,         &settings_.strain_limit, &settings_.leash,
+            &settings_.pull_rate,      &settings_.air_drag,     &settings_.damping_scale,
+            &settings_.friction_scale, &settings_.clean_passes, &settings_.self_contact,
             &settings_.gravity};
         return *all[index];
     }

@@ -44,8 +44,8 @@ class GarmentCloth {
 
     /// Finds the contacts of an interval; `body` is placed at its middle.
     void find_contacts(const MovingBody& body, const Interval& interval) noexcept;
-    /// A substep in three parts; cloth meets cloth after the first. `fraction` of the step is over at
-    /// its end; `since` seconds lie between the body of the contacts and its end.
+    /// A substep in three parts; cloth meets cloth after the first. `fraction` of the step is over
+    /// at its end; `since` seconds lie between the body of the contacts and its end.
     void move(float fraction, float share, float substep) noexcept;
     void meet_body(float since, float substep) noexcept;
     void update_velocities(float substep, bool damp) noexcept;

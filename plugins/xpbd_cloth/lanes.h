@@ -1,5 +1,6 @@
 // Eight particles at a time: rows x y z w of eight vertices become four registers and back.
-// Loading rows and turning them in registers is faster than AVX2's gathers, and there is no scatter.
+// Loading rows and turning them in registers is faster than AVX2's gathers, and there is no
+// scatter.
 #pragma once
 
 #include "core/types.h"
@@ -41,9 +42,8 @@ inline __m256 load(const float* values) noexcept {
 /// Rows index[0..7] of `rows`.
 inline Lanes3 load_rows(const Vec4f* rows, const std::uint32_t* index) noexcept {
     const auto pair = [&](std::size_t k) {
-        return _mm256_insertf128_ps(
-            _mm256_castps128_ps256(_mm_load_ps(rows[index[k]].data())),
-            _mm_load_ps(rows[index[k + 4]].data()), 1);
+        return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(rows[index[k]].data())),
+                                    _mm_load_ps(rows[index[k + 4]].data()), 1);
     };
     const __m256 r0 = pair(0);
     const __m256 r1 = pair(1);

@@ -47,8 +47,7 @@ void Links::set_substep(float seconds) noexcept {
     for (Block& block : blocks_) {
         for (std::size_t l = 0; l < kLanes; ++l) {
             const float sum = block.mass[0][l] + block.mass[1][l];
-            block.step[l] =
-                sum > 0.0f ? 1.0f / (sum + block.soft[l] / (seconds * seconds)) : 0.0f;
+            block.step[l] = sum > 0.0f ? 1.0f / (sum + block.soft[l] / (seconds * seconds)) : 0.0f;
         }
     }
 }
@@ -62,8 +61,8 @@ void Links::solve(std::span<Vec4f> x) const noexcept {
         const Lanes3 apart = b - a;
         const __m256 rest = load(block.length);
         const __m256 squared = dot(apart, apart);
-        if (one_sided_ && _mm256_movemask_ps(_mm256_cmp_ps(
-                              squared, _mm256_mul_ps(rest, rest), _CMP_GT_OQ)) == 0) {
+        if (one_sided_ && _mm256_movemask_ps(
+                              _mm256_cmp_ps(squared, _mm256_mul_ps(rest, rest), _CMP_GT_OQ)) == 0) {
             continue;
         }
         const __m256 length = _mm256_max_ps(_mm256_sqrt_ps(squared), tiny);

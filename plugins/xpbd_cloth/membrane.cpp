@@ -44,8 +44,8 @@ Membrane::Membrane(const ClothMesh& mesh, const Fabric& fabric, std::span<const 
         Block& block = blocks_[i / kLanes];
         const std::size_t lane = i % kLanes;
         const bool empty = order[i] == kNoConstraint;
-        const RestTriangle rest = empty ? RestTriangle{{1, 0}, {0, 1}}
-                                        : rest_triangle(mesh, order[i]);
+        const RestTriangle rest =
+            empty ? RestTriangle{{1, 0}, {0, 1}} : rest_triangle(mesh, order[i]);
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t v = empty ? nobody : mesh.triangles[order[i]][k];
             block.corner[k][lane] = v;
@@ -63,7 +63,7 @@ void Membrane::set_substep(float seconds) noexcept {
         return;
     }
     substep_ = seconds;
-    const auto step = [](const float (&c)[2], const float (&w)[3], float compliance) {
+    const auto step = [](const float(&c)[2], const float(&w)[3], float compliance) {
         const float c0 = c[0] + c[1];
         const float sum = w[0] * c0 * c0 + w[1] * c[0] * c[0] + w[2] * c[1] * c[1];
         return sum > 0.0f ? 1.0f / (sum + compliance) : 0.0f;
@@ -97,8 +97,7 @@ void Membrane::solve_block(const Block& block, Vec4f* x) noexcept {
     const auto stretch = [&](__m256 c1, __m256 c2, __m256 step) {
         const Lanes3 f = blend(p1 - p0, c1, p2 - p0, c2);
         const __m256 length = _mm256_max_ps(_mm256_sqrt_ps(dot(f, f)), tiny);
-        const __m256 pull =
-            _mm256_mul_ps(step, _mm256_div_ps(_mm256_sub_ps(one, length), length));
+        const __m256 pull = _mm256_mul_ps(step, _mm256_div_ps(_mm256_sub_ps(one, length), length));
         add(p1, _mm256_mul_ps(_mm256_mul_ps(w1, c1), pull), f);
         add(p2, _mm256_mul_ps(_mm256_mul_ps(w2, c2), pull), f);
         const __m256 c0 = _mm256_sub_ps(zero, _mm256_add_ps(c1, c2));
@@ -124,8 +123,8 @@ void Membrane::solve_block(const Block& block, Vec4f* x) noexcept {
         w0, dot(g0, g0),
         _mm256_fmadd_ps(w1, dot(g1, g1),
                         _mm256_fmadd_ps(w2, dot(g2, g2), load(block.compliance_s))));
-    const __m256 pull = _mm256_sub_ps(
-        zero, _mm256_div_ps(dot(fu, fv), _mm256_max_ps(sum, _mm256_set1_ps(1e-12f))));
+    const __m256 pull =
+        _mm256_sub_ps(zero, _mm256_div_ps(dot(fu, fv), _mm256_max_ps(sum, _mm256_set1_ps(1e-12f))));
     add(p1, _mm256_mul_ps(w1, pull), g1);
     add(p2, _mm256_mul_ps(w2, pull), g2);
     add(p0, _mm256_sub_ps(zero, _mm256_mul_ps(w0, pull)), g0);
