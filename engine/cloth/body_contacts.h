@@ -23,6 +23,9 @@ struct Refresh {
     std::uint32_t phase; ///< whose turn it is: samples with index % phases == phase
     std::uint32_t phases;
     bool last; ///< end of the frame: every sample near the skin, nobody looks around
+    /// 0: on its turn every sample walks and every vertex looks around. Else who has not slid keeps
+    /// its place on the skin, and looks around on every fourth of its turns only; counts frames.
+    std::uint32_t lazy_frame = 0;
 };
 
 /// Positions x, those at the start of the substep q (their difference is the motion), and inverse
@@ -93,8 +96,10 @@ class BodyContacts {
                       std::vector<ActivePlane>& own, std::vector<ActivePlane>& other) noexcept;
     [[nodiscard]] static Plane plane_at(const MovingBody& body, const Vec4& p,
                                         const SurfacePoint& at) noexcept;
-    [[nodiscard]] bool has_drifted(const MovingBody& body, const Vec4& v, std::size_t sample,
-                                   float seconds) noexcept;
+    [[nodiscard]] bool has_drifted(const MovingBody& body, const Vec4& p, const Vec4& v,
+                                   std::size_t sample, const Refresh& when) noexcept;
+    /// Its place on the skin moves with the skin.
+    void carry(const MovingBody& body, const Vec4& p, std::size_t sample) noexcept;
     [[nodiscard]] JointMask mask_for(std::size_t sample, const MovingBody& body,
                                      std::uint32_t triangle) const noexcept;
     void push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
@@ -109,6 +114,7 @@ class BodyContacts {
     std::vector<std::uint32_t> own_triangle_;    ///< (samples)
     std::vector<std::uint32_t> other_triangle_;  ///< (samples) or kNone
     std::vector<Plane> own_plane_, other_plane_; ///< (samples)
+    std::vector<std::array<float, 3>> own_place_; ///< (samples) barycentric
     std::vector<float> drift_; ///< (samples) m, at most slid over the skin since its last walk
     /// Planes within reach until the next refresh; capacity (samples).
     std::vector<ActivePlane> own_vertices_, other_vertices_, own_centres_, other_centres_;

@@ -151,7 +151,11 @@ void MovingBody::set_motion(std::span<const Vec3f> before, std::span<const Vec3f
         compute_normals(before_, normal_before_);
     }
     std::transform(after.begin(), after.end(), after_.begin(), to_vec4);
-    compute_normals(after_, normal_after_);
+    if (std::equal(after_.begin(), after_.end(), before_.begin())) {
+        std::copy(normal_before_.begin(), normal_before_.end(), normal_after_.begin());
+    } else {
+        compute_normals(after_, normal_after_);
+    }
     per_second_ = dt > 0.0f ? 1.0f / dt : 0.0f;
     for (Part& part : parts_) {
         float farthest = 0.0f;

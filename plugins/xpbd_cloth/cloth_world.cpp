@@ -133,6 +133,7 @@ StepResult ClothWorld::step(const StepInput& input) noexcept {
             entry.fresh = false;
         }
     }
+    frame_ = input.reset ? 1 : frame_ % 4096 + 1;
     const float since_last = substep > 0.0f ? simulate(input.dt_s, count) : 0.0f;
     body_->place(1.0f);
     for (const GarmentFrame& frame : input.garments) {
@@ -155,7 +156,7 @@ float ClothWorld::simulate(double dt_s, std::uint32_t substeps) noexcept {
     float last_half = 0.0f;
     for (std::uint32_t i = 0; i < intervals; ++i) {
         const std::uint32_t end = substeps * (i + 1) / intervals;
-        const Interval interval{i, intervals, end - done, substep};
+        const Interval interval{i, intervals, end - done, substep, frame_};
         last_half = 0.5f * interval.length();
         body_->place(0.5f * share * static_cast<float>(done + end));
         for (Entry& entry : garments_) {

@@ -57,6 +57,7 @@ class ClothWorld {
     std::vector<KnownGarment> known_; ///< the same, as the check of a step reads them
     std::vector<Vec4> x_, q_, v_;     ///< rows of all garments
     std::uint32_t next_handle_ = 1;
+    std::uint32_t frame_ = 1; ///< steps since the last reset
 };
 
 } // namespace toile::xpbd_cloth

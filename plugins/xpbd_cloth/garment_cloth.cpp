@@ -126,7 +126,8 @@ void GarmentCloth::find_contacts(const MovingBody& body, const Interval& interva
     period_ = interval.length() * static_cast<float>(interval.of);
     const std::size_t count = start_.size();
     contacts_.refresh(body, rows_.x.first(count), rows_.v.first(count),
-                      {half, since_last, half, period_, interval.index, interval.of, false},
+                      {half, since_last, half, period_, interval.index, interval.of, false,
+                       interval.frame},
                       contact_);
 }
 
@@ -210,7 +211,7 @@ void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
     const std::size_t count = start_.size();
     const std::span<Vec4> x = rows_.x.first(count);
     const std::span<Vec4> q = rows_.q.first(count);
-    contacts_.refresh(body, x, rows_.v.first(count), {0.0f, since_last, 0.0f, period_, 0, 1, true},
+    contacts_.refresh(body, x, rows_.v.first(count), {0.0f, since_last, 0.0f, period_, 0, 1, true, 1},
                       still);
     std::copy(x.begin(), x.end(), q.begin());
     cover_.find(body, contacts_, x);

@@ -22,6 +22,7 @@ struct Interval {
     std::uint32_t index, of; ///< its number, and how many the step has
     std::uint32_t substeps;  ///< in it
     float substep;           ///< s
+    std::uint32_t frame;     ///< steps since the reset, from 1
     [[nodiscard]] float length() const { return static_cast<float>(substeps) * substep; }
 };
 
