@@ -1,6 +1,5 @@
 #include "bullet_cloth/cloth_model.h"
 
-#include "bullet_cloth/length_limits.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -117,8 +116,14 @@ ClothModel make_cloth_model(const ClothMesh& mesh, const Fabric& fabric, float l
         mass = mass > 0.0f ? mass : mean_mass;
     }
     if (limit_edges > 0.0f) {
-        model.limits = make_length_limits(mesh.positions.size(), model.stretch, model.bend,
-                                          limit_edges * model.mean_edge);
+        std::vector<cloth::MaterialPath> paths;
+        for (const std::vector<Spring>* springs : {&model.stretch, &model.bend}) {
+            for (const Spring& spring : *springs) {
+                paths.push_back({spring.a, spring.b, spring.rest});
+            }
+        }
+        model.limits = cloth::make_length_limits(mesh.positions.size(), paths,
+                                                 limit_edges * model.mean_edge);
     }
     const float seam_stiffness = 0.5f * (fabric.stretch_warp + fabric.stretch_weft);
     for (const auto& seam : mesh.seams) {

@@ -1,6 +1,7 @@
 // What a garment's mesh and fabric become for a solver: masses, springs and length limits.
 #pragma once
 
+#include "cloth/length_limits.h"
 #include "cloth/sheet.h"
 
 #include <span>
@@ -15,14 +16,9 @@ struct Spring {
     float stiffness; ///< N/m
 };
 
-/// Two vertices that the cloth between them never lets further apart.
-struct LengthLimit {
-    std::uint32_t a, b;
-    float longest; ///< m, along the material
-};
-
 using cloth::ClothMesh;
 using cloth::Fabric;
+using cloth::LengthLimit;
 
 struct ClothModel {
     std::vector<float> mass;         ///< (nv) kg

@@ -61,10 +61,29 @@ std::vector<Edge> material_edges(const ClothMesh& mesh) {
         while (end < sides.size() && same_edge(sides[end], sides[i])) {
             length += sides[end++].length;
         }
-        edges.push_back({sides[i].a, sides[i].b, length / static_cast<float>(end - i)});
+        edges.push_back({sides[i].a, sides[i].b, length / static_cast<float>(end - i), end - i == 1});
         i = end;
     }
     return edges;
+}
+
+std::vector<cloth::MaterialPath> material_paths(const ClothMesh& mesh) {
+    std::vector<cloth::MaterialPath> paths;
+    for (const Edge& edge : material_edges(mesh)) {
+        paths.push_back({edge.a, edge.b, edge.rest});
+    }
+    const std::vector<Side> sides = sorted_sides(mesh, Fabric{});
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+        const Side& p = sides[i];
+        const Side& q = sides[i + 1];
+        if (same_edge(p, q) && p.opposite != q.opposite) {
+            const float across = 2.0f * (p.area + q.area) / p.length;
+            const float along =
+                2.0f * (p.cot_a * p.area - q.cot_a * q.area) / p.length; // between the feet
+            paths.push_back({p.opposite, q.opposite, std::hypot(across, along)});
+        }
+    }
+    return paths;
 }
 
 Bending::Bending(const ClothMesh& mesh, const Fabric& fabric, std::span<const float> inverse_mass) {

@@ -1,6 +1,7 @@
 // Bending over every inner edge, from the angle between its two triangles.
 #pragma once
 
+#include "cloth/length_limits.h"
 #include "xpbd_cloth/membrane.h"
 
 namespace toile::xpbd_cloth {
@@ -39,8 +40,11 @@ class Bending {
 /// The mesh's edges, each once, a < b, in order of a and b.
 struct Edge {
     std::uint32_t a, b;
-    float rest; ///< m, of the material
+    float rest;  ///< m, of the material
+    bool border; ///< of one triangle only
 };
 [[nodiscard]] std::vector<Edge> material_edges(const ClothMesh& mesh);
+/// The edges, and the straight ways across each between the corners opposite it.
+[[nodiscard]] std::vector<cloth::MaterialPath> material_paths(const ClothMesh& mesh);
 
 } // namespace toile::xpbd_cloth

@@ -74,6 +74,12 @@ class XpbdCloth {
         sdk::Parameter{"strain_limit", TOILE_PARAMETER_REAL, "1",
                        "longest that cloth gets over its material; 0: none", 0, 1,
                        defaults.strain_limit},
+        sdk::Parameter{"limit_edges", TOILE_PARAMETER_REAL, "1",
+                       "reach of the longer limits in mesh edges; 0: none", 0, 40,
+                       defaults.limit_edges},
+        sdk::Parameter{"border_passes", TOILE_PARAMETER_INTEGER, "1",
+                       "passes over the edges of openings in each substep", 0, 50,
+                       defaults.border_passes},
         sdk::Parameter{"leash", TOILE_PARAMETER_REAL, "m",
                        "farthest that free cloth may be from where plain skinning has it", 0.01, 5,
                        defaults.leash},
@@ -101,7 +107,7 @@ class XpbdCloth {
     double& parameter(std::size_t index) {
         const std::array<double*, parameters.size()> all{
             &settings_.substep_rate,   &settings_.wave_speed,   &settings_.contact_rate,
-            &settings_.margin,         &settings_.strain_limit, &settings_.leash,
+            &settings_.margin,         &settings_.strain_limit, &settings_.limit_edges, &settings_.border_passes, &settings_.leash,
             &settings_.pull_rate,      &settings_.air_drag,     &settings_.damping_scale,
             &settings_.friction_scale, &settings_.clean_passes, &settings_.self_contact,
             &settings_.gravity};

@@ -48,11 +48,33 @@ std::vector<Link> seam_links(const GarmentInput& input) {
     return links;
 }
 
-/// Edges may get this much longer than their material.
-std::vector<Link> edge_limits(const ClothMesh& mesh, float strain_limit) {
+/// Edges may get `strain_limit` longer than their material; so may the ways over `limit_edges`
+/// mean edges, and these are pulled first, so that the near ones have little left to do.
+std::vector<Link> length_limits(const ClothMesh& mesh, float mean_edge, const Settings& settings) {
     std::vector<Link> links;
-    if (strain_limit > 0.0f) {
-        for (const Edge& edge : material_edges(mesh)) {
+    const auto longest = 1.0f + static_cast<float>(settings.strain_limit);
+    if (settings.strain_limit <= 0.0) {
+        return links;
+    }
+    if (settings.limit_edges > 0.0) {
+        for (const cloth::LengthLimit& limit :
+             cloth::make_length_limits(mesh.positions.size(), material_paths(mesh),
+                                       static_cast<float>(settings.limit_edges) * mean_edge)) {
+            links.push_back({limit.a, limit.b, longest * limit.longest, 0.0f});
+        }
+    }
+    for (const Edge& edge : material_edges(mesh)) {
+        links.push_back({edge.a, edge.b, longest * edge.rest, 0.0f});
+    }
+    return links;
+}
+
+/// Openings carry a garment's weight along their edge, where a pass gets from one vertex to the next
+/// only; there are few of these edges, so they get many passes.
+std::vector<Link> border_limits(const ClothMesh& mesh, float strain_limit) {
+    std::vector<Link> links;
+    for (const Edge& edge : material_edges(mesh)) {
+        if (edge.border && strain_limit > 0.0f) {
             links.push_back({edge.a, edge.b, (1.0f + strain_limit) * edge.rest, 0.0f});
         }
     }
@@ -81,8 +103,9 @@ GarmentCloth::GarmentCloth(const GarmentInput& input, const MovingBody& rest_bod
       membrane_(input.mesh, input.fabric, inverse_mass_),
       bending_(input.mesh, input.fabric, inverse_mass_),
       seams_(seam_links(input), inverse_mass_, false),
-      limits_(edge_limits(input.mesh, static_cast<float>(settings.strain_limit)), inverse_mass_,
-              true),
+      limits_(length_limits(input.mesh, mean_edge_, settings), inverse_mass_, true),
+      borders_(border_limits(input.mesh, static_cast<float>(settings.strain_limit)), inverse_mass_,
+               true),
       damping_(material_edges(input.mesh), inverse_mass_),
       contacts_(input.mesh.triangles, start_.size(), input.joints, input.weights),
       cover_(input.mesh.triangles.size()) {
@@ -107,6 +130,7 @@ void GarmentCloth::begin_step(std::span<const Vec3f> targets, float substep) noe
         bending_.set_substep(substep);
         seams_.set_substep(substep);
         limits_.set_substep(substep);
+        borders_.set_substep(substep);
     }
 }
 
@@ -137,6 +161,9 @@ void GarmentCloth::move(float fraction, float share, float substep) noexcept {
     seams_.solve(rows_.x);
     membrane_.solve(rows_.x);
     limits_.solve(rows_.x);
+    for (int pass = 0; pass < static_cast<int>(settings_.border_passes); ++pass) {
+        borders_.solve(rows_.x);
+    }
     follow_targets(fraction, share, substep);
 }
 

@@ -92,7 +92,7 @@ class GarmentCloth {
     float mean_edge_ = 0.0f;                 ///< m
     Membrane membrane_;
     Bending bending_;
-    Links seams_, limits_;
+    Links seams_, limits_, borders_;
     VelocityDamping damping_;
     cloth::BodyContacts contacts_;
     cloth::SkinCover cover_;

@@ -9,9 +9,11 @@ struct Settings {
     double contact_rate = 60.0 ; ///< 1/s, refreshes of the contact planes
     double margin = 0.003;       ///< m, kept free between skin and cloth
     double strain_limit = 0.03;  ///< longest that cloth gets over its material; 0: none
+    double limit_edges = 4.0;    ///< reach of the longer limits, mesh edges; 0: none
+    double border_passes = 8.0;  ///< over the edges of openings, each substep
     double leash = 0.25;         ///< m, farthest a free vertex may be from its target
     double pull_rate = 60.0;     ///< rad/s, of a vertex with attachment 0.5 about its target
-    double air_drag = 0.3;       ///< 1/s
+    double air_drag = 1.0;       ///< 1/s
     double damping_scale = 1.0;  ///< on the fabric's own damping
     double friction_scale = 1.0; ///< on the fabric's own friction
     double clean_passes = 4.0;   ///< against the full-resolution body, at the end of a frame
