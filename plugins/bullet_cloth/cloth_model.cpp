@@ -1,6 +1,5 @@
 #include "bullet_cloth/cloth_model.h"
 
-#include "bullet_cloth/length_limits.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -22,92 +21,11 @@ struct HalfEdge {
     float rigidity;         ///< N m, bending about the side
 };
 
-/// Modulus of an orthotropic sheet along a direction (no Poisson coupling):
-/// 1/K = c^4/K_weft + s^4/K_warp + s^2 c^2 / G.
-float directional_stiffness(const Fabric& fabric, float cosine, float sine) {
-    const float c2 = cosine * cosine;
-    const float s2 = sine * sine;
-    return 1.0f /
-           (c2 * c2 / fabric.stretch_weft + s2 * s2 / fabric.stretch_warp + s2 * c2 / fabric.shear);
-}
-
-/// Bending about a line along the direction curves the cloth across it.
-float directional_rigidity(const Fabric& fabric, float cosine, float sine) {
-    return fabric.bend_warp * cosine * cosine + fabric.bend_weft * sine * sine;
-}
-
-void check(const ClothMesh& mesh, const Fabric& fabric) {
-    if (mesh.positions.empty() || mesh.triangles.empty()) {
-        throw Error("garment mesh: has no vertices or no triangles; give a welded triangle mesh");
-    }
-    if (!mesh.corner_coords.empty() && mesh.corner_coords.size() != 3 * mesh.triangles.size()) {
-        throw Error("garment mesh: " + std::to_string(mesh.corner_coords.size()) +
-                    " material coordinates for " + std::to_string(mesh.triangles.size()) +
-                    " triangles; give three per triangle");
-    }
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        if (!mesh.positions[i].allFinite()) {
-            throw Error("garment mesh: vertex " + std::to_string(i) + " is not finite");
-        }
-    }
-    for (std::size_t i = 0; i < mesh.corner_coords.size(); ++i) {
-        if (!mesh.corner_coords[i].allFinite()) {
-            throw Error("garment mesh: a material coordinate of triangle " + std::to_string(i / 3) +
-                        " is not finite");
-        }
-    }
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (const std::uint32_t v : mesh.triangles[t]) {
-            if (v >= mesh.positions.size()) {
-                throw Error("garment mesh: triangle " + std::to_string(t) + " names vertex " +
-                            std::to_string(v) + " of " + std::to_string(mesh.positions.size()));
-            }
-        }
-    }
-    for (const auto& seam : mesh.seams) {
-        if (seam[0] >= mesh.positions.size() || seam[1] >= mesh.positions.size()) {
-            throw Error("garment mesh: a seam names a vertex that does not exist");
-        }
-    }
-    const auto positive = [](float value) { return std::isfinite(value) && value > 0.0f; };
-    const auto not_negative = [](float value) { return std::isfinite(value) && value >= 0.0f; };
-    if (!positive(fabric.density) || !positive(fabric.stretch_warp) ||
-        !positive(fabric.stretch_weft) || !positive(fabric.shear)) {
-        throw Error("fabric: density, stretch and shear must be greater than zero");
-    }
-    if (!not_negative(fabric.bend_warp) || !not_negative(fabric.bend_weft) ||
-        !not_negative(fabric.friction) || !not_negative(fabric.damping) ||
-        !not_negative(fabric.thickness)) {
-        throw Error("fabric: thickness, bending, friction and damping must not be negative");
-    }
-}
-
-/// The three corners of a triangle in the plane of its material.
-std::array<Vec2f, 3> material_corners(const ClothMesh& mesh, std::size_t t) {
-    if (!mesh.corner_coords.empty()) {
-        return {mesh.corner_coords[3 * t], mesh.corner_coords[3 * t + 1],
-                mesh.corner_coords[3 * t + 2]};
-    }
-    const Vec3f a = mesh.positions[mesh.triangles[t][0]];
-    const Vec3f ab = mesh.positions[mesh.triangles[t][1]] - a;
-    const Vec3f ac = mesh.positions[mesh.triangles[t][2]] - a;
-    const Vec3f normal = ab.cross(ac).normalized();
-    // Warp stands as upright as the triangle allows.
-    Vec3f warp = Vec3f::UnitY() - normal * normal.y();
-    if (warp.norm() < 1e-3f) {
-        warp = Vec3f::UnitZ() - normal * normal.z();
-    }
-    warp.normalize();
-    const Vec3f weft = warp.cross(normal);
-    return {Vec2f(0.0f, 0.0f), Vec2f(ab.dot(weft), ab.dot(warp)),
-            Vec2f(ac.dot(weft), ac.dot(warp))};
-}
-
 std::vector<HalfEdge> half_edges(const ClothMesh& mesh, const Fabric& fabric, ClothModel& model) {
     std::vector<HalfEdge> sides;
     sides.reserve(3 * mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const std::array<Vec2f, 3> corner = material_corners(mesh, t);
+        const std::array<Vec2f, 3> corner = cloth::material_corners(mesh, t);
         const Vec2f u = corner[1] - corner[0];
         const Vec2f v = corner[2] - corner[0];
         const float area = 0.5f * std::abs(u.x() * v.y() - u.y() * v.x());
@@ -135,8 +53,8 @@ std::vector<HalfEdge> half_edges(const ClothMesh& mesh, const Fabric& fabric, Cl
             side.height = 2.0f * area / length;
             side.foot = (corner[(k + 2) % 3] - corner[from]).dot(unit);
             side.area = area;
-            side.stiffness = directional_stiffness(fabric, unit.x(), unit.y());
-            side.rigidity = directional_rigidity(fabric, unit.x(), unit.y());
+            side.stiffness = cloth::directional_stiffness(fabric, unit);
+            side.rigidity = cloth::directional_rigidity(fabric, unit);
             sides.push_back(side);
         }
     }
@@ -186,7 +104,7 @@ void add_springs(std::span<const HalfEdge> sides, ClothModel& model) {
 } // namespace
 
 ClothModel make_cloth_model(const ClothMesh& mesh, const Fabric& fabric, float limit_edges) {
-    check(mesh, fabric);
+    cloth::check(mesh, fabric);
     ClothModel model;
     model.mass.assign(mesh.positions.size(), 0.0f);
     const std::vector<HalfEdge> sides = half_edges(mesh, fabric, model);
@@ -198,8 +116,14 @@ ClothModel make_cloth_model(const ClothMesh& mesh, const Fabric& fabric, float l
         mass = mass > 0.0f ? mass : mean_mass;
     }
     if (limit_edges > 0.0f) {
-        model.limits = make_length_limits(mesh.positions.size(), model.stretch, model.bend,
-                                          limit_edges * model.mean_edge);
+        std::vector<cloth::MaterialPath> paths;
+        for (const std::vector<Spring>* springs : {&model.stretch, &model.bend}) {
+            for (const Spring& spring : *springs) {
+                paths.push_back({spring.a, spring.b, spring.rest});
+            }
+        }
+        model.limits = cloth::make_length_limits(mesh.positions.size(), paths,
+                                                 limit_edges * model.mean_edge);
     }
     const float seam_stiffness = 0.5f * (fabric.stretch_warp + fabric.stretch_weft);
     for (const auto& seam : mesh.seams) {

@@ -1,25 +1,13 @@
 // What a garment's mesh and fabric become for a solver: masses, springs and length limits.
 #pragma once
 
-#include "core/types.h"
+#include "cloth/length_limits.h"
+#include "cloth/sheet.h"
 
 #include <span>
 #include <vector>
 
 namespace toile::bullet_cloth {
-
-/// SI units; as toile_fabric of the plugin boundary.
-struct Fabric {
-    float density = 0.2f;         ///< kg/m^2
-    float thickness = 0.0005f;    ///< m
-    float stretch_warp = 2000.0f; ///< N/m, force per width per unit strain, along v
-    float stretch_weft = 2000.0f; ///< N/m, along u
-    float shear = 300.0f;         ///< N/m
-    float bend_warp = 1e-5f;      ///< N m, bending rigidity per width
-    float bend_weft = 1e-5f;      ///< N m
-    float friction = 0.4f;        ///< Coulomb, against skin
-    float damping = 2.0f;         ///< 1/s, share of relative velocity lost
-};
 
 /// Pulls two vertices to their rest distance.
 struct Spring {
@@ -28,20 +16,9 @@ struct Spring {
     float stiffness; ///< N/m
 };
 
-/// Two vertices that the cloth between them never lets further apart.
-struct LengthLimit {
-    std::uint32_t a, b;
-    float longest; ///< m, along the material
-};
-
-/// One welded garment mesh at rest. Views are borrowed for the call.
-struct ClothMesh {
-    std::span<const Vec3f> positions;     ///< (nv)
-    std::span<const Triangle> triangles;  ///< (nf)
-    std::span<const Vec2f> corner_coords; ///< (3 nf) metres, u weft, v warp; or empty: the
-                                          ///< positions are the rest state, weft along x
-    std::span<const std::array<std::uint32_t, 2>> seams; ///< pairs to hold together
-};
+using cloth::ClothMesh;
+using cloth::Fabric;
+using cloth::LengthLimit;
 
 struct ClothModel {
     std::vector<float> mass;         ///< (nv) kg

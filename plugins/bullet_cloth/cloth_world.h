@@ -2,42 +2,19 @@
 #pragma once
 
 #include "bullet_cloth/garment_cloth.h"
+#include "cloth/step.h"
 
 #include <memory>
 #include <optional>
 
 namespace toile::bullet_cloth {
 
-/// One garment in and out of a step; (nv) each.
-struct GarmentFrame {
-    std::uint32_t garment = 0; ///< handle
-    std::span<const Vec3f> targets;
-    std::span<Vec3f> positions, normals;
-};
-
-struct StepInput {
-    std::span<const Vec3f> body_before, body_after; ///< (body nv) metres
-    double dt_s = 0.0;
-    bool reset = false;
-    std::span<const GarmentFrame> garments; ///< every garment of the world, in any order
-};
-
-enum class StepResult {
-    ok,
-    recovered, ///< a garment had become non-finite and was started anew from its targets
-    no_body,
-    body_count,    ///< body_before or body_after has another vertex count than the body
-    body_values,   ///< not finite, or further than a kilometre
-    time,          ///< dt is not in (0, 1] s; with reset [0, 1] s
-    garment_count, ///< not exactly the garments of the world
-    unknown_garment,
-    target_count,
-    target_values, ///< not finite, or further than a kilometre
-    output_count
-};
-
-/// What to tell a person about a result; lives as long as the program.
-[[nodiscard]] const char* step_result_text(StepResult result) noexcept;
+using cloth::BodyRest;
+using cloth::GarmentFrame;
+using cloth::KnownGarment;
+using cloth::step_result_text;
+using cloth::StepInput;
+using cloth::StepResult;
 
 class ClothWorld {
   public:
@@ -65,14 +42,15 @@ class ClothWorld {
         GarmentCloth cloth;
     };
 
-    [[nodiscard]] StepResult check(const StepInput& input) const noexcept;
     [[nodiscard]] Entry* find(std::uint32_t handle) noexcept;
     float simulate(double dt_s) noexcept;
+    void note_garments();
 
     Settings settings_;
     std::optional<MovingBody> rest_body_; ///< stays as it was given
     std::optional<MovingBody> body_;
     std::vector<Entry> garments_;
+    std::vector<KnownGarment> known_; ///< the same, as the check of a step reads them
     std::uint32_t next_handle_ = 1;
 };
 

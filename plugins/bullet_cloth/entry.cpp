@@ -1,4 +1,5 @@
 // Kind toile.cloth/1 over bullet_cloth/cloth_world.h.
+#include "abi/body.h"
 #include "bullet_cloth/cloth_world.h"
 #include "sdk/cloth.h"
 #include "sdk/host.h"
@@ -13,6 +14,7 @@ using toile::Vec2f;
 using toile::Vec3f;
 using namespace toile::bullet_cloth;
 
+static_assert(toile::cloth::kBodyJoints == TOILE_JOINT_COUNT);
 static_assert(sizeof(Vec3f) == sizeof(sdk::Float3) && alignof(Vec3f) == alignof(sdk::Float3));
 static_assert(sizeof(Vec2f) == sizeof(sdk::Float2) && alignof(Vec2f) <= 8);
 

@@ -16,53 +16,17 @@ Vec4 to_vec4(const Vec3f& p) {
     return {p.x(), p.y(), p.z(), 0.0f};
 }
 
-std::vector<float> attachments(const GarmentInput& input) {
-    const std::size_t count = input.mesh.positions.size();
-    if (input.attachment.empty()) {
-        return std::vector<float>(count, 0.0f);
-    }
-    if (input.attachment.size() != count) {
-        throw Error("garment: " + std::to_string(input.attachment.size()) + " attachments for " +
-                    std::to_string(count) + " vertices");
-    }
-    for (std::size_t v = 0; v < count; ++v) {
-        if (!(input.attachment[v] >= 0.0f && input.attachment[v] <= 1.0f)) {
-            throw Error("garment: attachment of vertex " + std::to_string(v) + " is not in 0..1");
-        }
-    }
-    return {input.attachment.begin(), input.attachment.end()};
-}
-
-std::vector<float> inverse_masses(std::span<const float> mass, std::span<const float> attachment) {
-    constexpr float kHeld = 0.999f;
-    std::vector<float> inverse(mass.size());
-    for (std::size_t v = 0; v < mass.size(); ++v) {
-        inverse[v] = attachment[v] >= kHeld ? 0.0f : 1.0f / mass[v];
-    }
-    return inverse;
-}
-
-ContactSettings contact_settings(const GarmentInput& input, const Settings& settings) {
-    // An outer layer keeps further out, so that it lies over the inner one.
-    constexpr float kBetweenLayers = 0.002f;
-    const float thickness = std::min(input.fabric.thickness, 0.01f);
-    const float layers =
-        static_cast<float>(std::min(input.layer, 8u)) * (thickness + kBetweenLayers);
-    ContactSettings contact;
-    contact.offset = 0.5f * thickness + static_cast<float>(settings.margin) + layers;
-    contact.centre_offset = 0.5f * contact.offset + 0.5f * layers;
-    contact.friction = input.fabric.friction * static_cast<float>(settings.friction_scale);
-    return contact;
-}
-
 } // namespace
 
 GarmentCloth::GarmentCloth(const GarmentInput& input, const MovingBody& rest_body,
                            const Settings& settings)
-    : settings_(settings), fabric_(input.fabric), contact_(contact_settings(input, settings)),
+    : settings_(settings), fabric_(input.fabric),
+      contact_(cloth::contact_settings(input, static_cast<float>(settings.margin),
+                                       static_cast<float>(settings.friction_scale))),
       start_(input.mesh.positions.begin(), input.mesh.positions.end()),
       model_(make_cloth_model(input.mesh, input.fabric, static_cast<float>(settings.limit_edges))),
-      attachment_(attachments(input)), inverse_mass_(inverse_masses(model_.mass, attachment_)),
+      attachment_(cloth::attachments(input)),
+      inverse_mass_(cloth::inverse_masses(model_.mass, attachment_)),
       links_(start_, inverse_mass_, model_.stretch, model_.bend),
       contacts_(input.mesh.triangles, start_.size(), input.joints, input.weights),
       cover_(input.mesh.triangles.size()), leash_(static_cast<float>(settings.leash)) {
@@ -194,7 +158,7 @@ void GarmentCloth::update_velocities(float substep, bool damp) noexcept {
 }
 
 void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
-    ContactSettings still = contact_;
+    cloth::ContactSettings still = contact_;
     still.friction = 0.0f;
     contacts_.refresh(body, x_, v_, {0.0f, since_last, 0.0f, period_, 0, 1, true}, still);
     std::copy(x_.begin(), x_.end(), q_.begin());

@@ -1,20 +1,17 @@
 // One garment in the cloth world: its particles, springs, contacts, targets.
 #pragma once
 
+#include "bullet_cloth/link_solver.h"
 #include "bullet_cloth/settings.h"
-#include "bullet_cloth/skin_cover.h"
+#include "cloth/garment_input.h"
+#include "cloth/skin_cover.h"
 
 namespace toile::bullet_cloth {
 
-/// What never changes of a garment. Views are borrowed for the call.
-struct GarmentInput {
-    ClothMesh mesh; ///< positions: as bound to the body at rest
-    Fabric fabric;
-    std::span<const std::array<std::uint16_t, 4>> joints; ///< (nv)
-    std::span<const std::array<float, 4>> weights;        ///< (nv)
-    std::span<const float> attachment; ///< (nv) 0 free .. 1 held to its target; or empty
-    unsigned layer = 0;                ///< 0 next to the skin
-};
+using cloth::BodyContacts;
+using cloth::MovingBody;
+
+using cloth::GarmentInput;
 
 /// A stretch of one step: substeps [first, last) of `count`, over a body placed at one moment.
 struct Interval {
@@ -62,14 +59,14 @@ class GarmentCloth {
 
     Settings settings_;
     Fabric fabric_;
-    ContactSettings contact_;
+    cloth::ContactSettings contact_;
     std::vector<Vec3f> start_;
     ClothModel model_;
     std::vector<float> attachment_;
     std::vector<float> inverse_mass_; ///< (nv) 1/kg, 0: held
     LinkSolver links_;
-    Contacts contacts_;
-    SkinCover cover_;
+    BodyContacts contacts_;
+    cloth::SkinCover cover_;
     std::vector<Vec4> x_, q_, v_; ///< positions, those at the start of the substep, velocities
     std::vector<Vec4> target_before_, target_after_;
     float leash_ = 0.0f;

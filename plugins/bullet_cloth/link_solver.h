@@ -3,13 +3,13 @@
 #pragma once
 
 #include "bullet_cloth/cloth_model.h"
+#include "cloth/moving_body.h"
 
 #include <memory>
 
 namespace toile::bullet_cloth {
 
-/// Positions and other per-vertex vectors: x y z, and 0.
-using Vec4 = Eigen::Vector4f;
+using cloth::Vec4;
 
 /// One garment's springs in a btSoftBody, solved by its serial Gauss-Seidel pass.
 ///

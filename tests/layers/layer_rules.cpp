@@ -23,6 +23,7 @@ const std::map<std::string, Names> kArrows = {
     {"imaging", {"core"}},
     {"assets", {"geometry", "imaging"}},
     {"body", {"assets"}},
+    {"cloth", {"geometry"}},
     {"garment", {"body"}},
     {"host", {"abi", "core"}},
     {"pipeline", {"host", "garment"}},
@@ -31,8 +32,8 @@ const std::map<std::string, Names> kArrows = {
 };
 
 // A plugin: the boundary, and the engine's algorithms up to garment.
-const Names kPluginLayers = {"abi",     "sdk",    "core", "geometry",
-                             "imaging", "assets", "body", "garment"};
+const Names kPluginLayers = {"abi",    "sdk",  "core",  "geometry", "imaging",
+                             "assets", "body", "cloth", "garment"};
 
 struct Library {
     const char* name;
@@ -43,7 +44,7 @@ struct Library {
 };
 
 // Everything that stands on core sees Eigen, JSON and the log through it.
-const Names kEverywhere = {"core",    "geometry", "imaging",  "assets", "body",
+const Names kEverywhere = {"core",    "geometry", "imaging",  "assets", "body", "cloth",
                            "garment", "host",     "pipeline", "render", "apps"};
 
 const std::vector<Library> kLibraries = {

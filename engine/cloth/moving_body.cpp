@@ -1,4 +1,4 @@
-#include "bullet_cloth/moving_body.h"
+#include "cloth/moving_body.h"
 
 #include "core/error.h"
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
 namespace {
 
 Vec4 to_vec4(const Vec3f& p) {
@@ -151,7 +151,11 @@ void MovingBody::set_motion(std::span<const Vec3f> before, std::span<const Vec3f
         compute_normals(before_, normal_before_);
     }
     std::transform(after.begin(), after.end(), after_.begin(), to_vec4);
-    compute_normals(after_, normal_after_);
+    if (std::equal(after_.begin(), after_.end(), before_.begin())) {
+        std::copy(normal_before_.begin(), normal_before_.end(), normal_after_.begin());
+    } else {
+        compute_normals(after_, normal_after_);
+    }
     per_second_ = dt > 0.0f ? 1.0f / dt : 0.0f;
     for (Part& part : parts_) {
         float farthest = 0.0f;
@@ -223,4 +227,4 @@ Vec4 MovingBody::velocity_at(const SurfacePoint& at) const noexcept {
     return sum * per_second_;
 }
 
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth

@@ -1,16 +1,13 @@
-#include "bullet_cloth/contacts.h"
+#include "cloth/body_contacts.h"
 
-#include "abi/body.h"
 #include "core/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
 namespace {
-
-static_assert(kBodyJoints == TOILE_JOINT_COUNT);
 
 /// Parent of each joint in the order of abi/body.h; the hips are their own.
 constexpr std::array<std::uint8_t, kBodyJoints> kParent{0,  0,  1,  2, 3,  4,  3,  6, 7,  8,  3,
@@ -88,11 +85,11 @@ bool lifts(const MovingBody& body, const SurfacePoint& own, const SurfacePoint& 
 
 } // namespace
 
-const Contacts::Plane Contacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), Vec4::Zero()};
+const BodyContacts::Plane BodyContacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), Vec4::Zero()};
 
-Contacts::Contacts(std::span<const Triangle> triangles, std::size_t vertex_count,
-                   std::span<const std::array<std::uint16_t, 4>> joints,
-                   std::span<const std::array<float, 4>> weights)
+BodyContacts::BodyContacts(std::span<const Triangle> triangles, std::size_t vertex_count,
+                           std::span<const std::array<std::uint16_t, 4>> joints,
+                           std::span<const std::array<float, 4>> weights)
     : triangles_(triangles.begin(), triangles.end()), vertex_count_(vertex_count) {
     if (joints.size() != vertex_count || weights.size() != vertex_count) {
         throw Error("garment: " + std::to_string(joints.size()) + " joint rows and " +
@@ -119,6 +116,7 @@ Contacts::Contacts(std::span<const Triangle> triangles, std::size_t vertex_count
     other_triangle_.assign(samples, kNone);
     own_plane_.assign(samples, kNowhere);
     other_plane_.assign(samples, kNowhere);
+    own_place_.assign(samples, {1.0f, 0.0f, 0.0f});
     drift_.assign(samples, 0.0f);
     for (std::vector<ActivePlane>* list :
          {&own_vertices_, &other_vertices_, &own_centres_, &other_centres_}) {
@@ -126,7 +124,7 @@ Contacts::Contacts(std::span<const Triangle> triangles, std::size_t vertex_count
     }
 }
 
-void Contacts::bind(const MovingBody& rest_body, std::span<const Vec3f> start) {
+void BodyContacts::bind(const MovingBody& rest_body, std::span<const Vec3f> start) {
     constexpr float kAnywhere = 1e4f; // m
     for (std::size_t s = 0; s < anchor_.size(); ++s) {
         Vec3f at = Vec3f::Zero();
@@ -156,20 +154,20 @@ void Contacts::bind(const MovingBody& rest_body, std::span<const Vec3f> start) {
     reset();
 }
 
-void Contacts::reset() noexcept {
+void BodyContacts::reset() noexcept {
     std::copy(anchor_.begin(), anchor_.end(), own_triangle_.begin());
     std::fill(other_triangle_.begin(), other_triangle_.end(), kNone);
     std::fill(own_plane_.begin(), own_plane_.end(), kNowhere);
 }
 
-JointMask Contacts::mask_for(std::size_t sample, const MovingBody& body,
-                             std::uint32_t triangle) const noexcept {
+JointMask BodyContacts::mask_for(std::size_t sample, const MovingBody& body,
+                                 std::uint32_t triangle) const noexcept {
     const JointMask mask = mask_[sample];
     return ((mask >> body.joint_of(triangle)) & 1u) != 0 ? mask : ~mask;
 }
 
-Contacts::Plane Contacts::plane_at(const MovingBody& body, const Vec4& p,
-                                   const SurfacePoint& at) noexcept {
+BodyContacts::Plane BodyContacts::plane_at(const MovingBody& body, const Vec4& p,
+                                           const SurfacePoint& at) noexcept {
     constexpr float kNear = 0.004f; // m, where the direction to the surface says little
     constexpr float kSlant = 0.5f;
     Plane plane{body.normal_at(at), body.velocity_at(at)};
@@ -184,9 +182,9 @@ Contacts::Plane Contacts::plane_at(const MovingBody& body, const Vec4& p,
 }
 
 /// Is another part, or another place of its own, nearer than where the sample has been?
-void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
-                           const ContactSettings& settings, float period,
-                           SurfacePoint& own) noexcept {
+void BodyContacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
+                               const ContactSettings& settings, float period,
+                               SurfacePoint& own) noexcept {
     constexpr float kApart = 0.02f;     // m, between two places worth two contacts
     constexpr float kOutside = -0.002f; // m, a new place is first met from outside
     const float own_distance = signed_distance(body, p, own);
@@ -227,10 +225,11 @@ void Contacts::look_around(const MovingBody& body, const Vec4& p, std::size_t sa
     }
 }
 
-void Contacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
-                            const SurfacePoint& own, const ContactSettings& settings,
-                            float period) noexcept {
+void BodyContacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
+                                const SurfacePoint& own, const ContactSettings& settings,
+                                float period) noexcept {
     own_triangle_[sample] = own.triangle;
+    own_place_[sample] = {own.bary[0], own.bary[1], own.bary[2]};
     own_plane_[sample] = plane_at(body, p, own);
     drift_[sample] = 0.0f;
     if (other_triangle_[sample] == kNone) {
@@ -259,59 +258,83 @@ void Contacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t s
 
 /// Has the sample slid so far over the skin that its plane says too little? A plane moves with the
 /// skin; 3 mm beside its point, skin bent with a radius of 3 cm is 0.15 mm off it.
-bool Contacts::has_drifted(const MovingBody& body, const Vec4& v, std::size_t sample,
-                           float seconds) noexcept {
+bool BodyContacts::has_drifted(const MovingBody& body, const Vec4& p, const Vec4& v,
+                               std::size_t sample, const Refresh& when) noexcept {
     constexpr float kFar = 0.003f;   // m
     constexpr float kTurning = 0.2f; // share of its speed that a part may turn a plane by
+    constexpr float kAloft = 0.25f;  // share of its height that a lazy sample may slide
     const Plane& plane = own_plane_[sample];
     const float sliding = direction(v - plane.velocity).norm();
     const float turning = kTurning * body.speed_of(body.joint_of(own_triangle_[sample]));
-    drift_[sample] += (sliding + turning) * seconds;
-    return drift_[sample] > kFar;
+    drift_[sample] += (sliding + turning) * when.since_last;
+    const float aloft = when.lazy_frame != 0 ? kAloft * (plane.normal.dot(p) - plane.normal.w()) : 0;
+    return drift_[sample] > std::max(kFar, aloft);
 }
 
-void Contacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v,
-                              std::uint32_t vertex, const Refresh& when,
-                              const ContactSettings& settings) noexcept {
+void BodyContacts::carry(const MovingBody& body, const Vec4& p, std::size_t sample) noexcept {
+    SurfacePoint at;
+    at.triangle = own_triangle_[sample];
+    const Triangle& corner = body.triangles()[at.triangle];
+    for (std::size_t k = 0; k < 3; ++k) {
+        at.bary[k] = own_place_[sample][k];
+        at.point += at.bary[k] * body.positions()[corner[k]];
+    }
+    at.squared = (p - at.point).squaredNorm();
+    own_plane_[sample] = plane_at(body, p, at);
+}
+
+void BodyContacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v,
+                                  std::uint32_t vertex, const Refresh& when,
+                                  const ContactSettings& settings) noexcept {
+    constexpr std::uint32_t kLook = 4; // turns of a lazy sample
     const bool turn = !when.last && vertex % when.phases == when.phase;
     Plane& plane = own_plane_[vertex];
     plane.normal.w() += plane.velocity.w() * when.since_last;
     const bool unknown = other_triangle_[vertex] != kNone || is_nowhere(plane.normal);
-    const bool near =
-        unknown || (has_drifted(body, v, vertex, when.since_last) &&
-                    is_near(plane.normal, plane.velocity, p, v, kNearSkin, when.period));
-    if (!turn && !near) {
+    const bool drifted = has_drifted(body, p, v, vertex, when);
+    const bool near = unknown || (drifted && is_near(plane.normal, plane.velocity, p, v, kNearSkin,
+                                                     when.period));
+    const bool looks = turn && (when.lazy_frame == 0 || (vertex + when.lazy_frame) % kLook == 0);
+    if (!near && !looks && !(turn && drifted)) {
+        if (turn) {
+            carry(body, p, vertex);
+        }
         return;
     }
     SurfacePoint own = body.walk(p, own_triangle_[vertex], mask_[vertex]);
     if (own.triangle == kNone) {
         return; // not a finite position; the world starts the garment anew
     }
-    if (turn) {
-        look_around(body, p, vertex, settings, when.period, own);
+    if (looks) {
+        const float period = when.lazy_frame == 0 ? when.period : kLook * when.period;
+        look_around(body, p, vertex, settings, period, own);
     }
     place_sample(body, p, vertex, own, settings, when.period);
 }
 
-void Contacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v,
-                              std::size_t triangle, const Refresh& when,
-                              const ContactSettings& settings) noexcept {
+void BodyContacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v,
+                                  std::size_t triangle, const Refresh& when,
+                                  const ContactSettings& settings) noexcept {
     const std::size_t sample = vertex_count_ + triangle;
     Plane& plane = own_plane_[sample];
     plane.normal.w() += plane.velocity.w() * when.since_last;
     other_plane_[sample].normal.w() += other_plane_[sample].velocity.w() * when.since_last;
     const bool turn = !when.last && triangle % when.phases == when.phase;
+    const std::uint32_t told = triangles_[triangle][(triangle + when.phase) % 3];
     const bool unknown = other_triangle_[sample] != kNone || is_nowhere(plane.normal);
-    const bool drifted = has_drifted(body, v, sample, when.since_last);
+    const bool drifted = has_drifted(body, p, v, sample, when);
     const bool near =
         when.last &&
         (unknown || (drifted && is_near(plane.normal, plane.velocity, p, v, kNearSkin, 0.0f)));
+    if (turn && when.lazy_frame != 0 && !drifted && !unknown && other_triangle_[told] == kNone) {
+        carry(body, p, sample);
+        return;
+    }
     if (!turn && !near) {
         return;
     }
     SurfacePoint own = body.walk(p, own_triangle_[sample], mask_[sample]);
     // What a corner found, the centre learns from it.
-    const std::uint32_t told = triangles_[triangle][(triangle + when.phase) % 3];
     const std::uint32_t heard = own_triangle_[told];
     if (turn && heard != own.triangle && ((mask_[sample] >> body.joint_of(heard)) & 1u) != 0) {
         const SurfacePoint there = body.walk(p, heard, mask_[sample]);
@@ -326,9 +349,9 @@ void Contacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4&
     place_sample(body, p, sample, own, settings, when.period);
 }
 
-void Contacts::list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
-                            std::vector<ActivePlane>& own,
-                            std::vector<ActivePlane>& other) noexcept {
+void BodyContacts::list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
+                                std::vector<ActivePlane>& own,
+                                std::vector<ActivePlane>& other) noexcept {
     const Plane& plane = own_plane_[sample];
     if (is_near(plane.normal, plane.velocity, p, v, kTouching, until_next)) {
         own.push_back({static_cast<std::uint32_t>(sample), plane});
@@ -338,8 +361,8 @@ void Contacts::list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, fl
     }
 }
 
-void Contacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
-                       const Refresh& when, const ContactSettings& settings) noexcept {
+void BodyContacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
+                           const Refresh& when, const ContactSettings& settings) noexcept {
     own_vertices_.clear();
     other_vertices_.clear();
     own_centres_.clear();
@@ -358,69 +381,4 @@ void Contacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::spa
     }
 }
 
-void Contacts::push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
-                           float since, float substep,
-                           const ContactSettings& settings) const noexcept {
-    Vec4& x = particles.x[vertex];
-    const float height = plane.normal.dot(x) - plane.normal.w() - plane.velocity.w() * since;
-    const float push = settings.offset - height;
-    if (push <= 0.0f || particles.w[vertex] <= 0.0f) {
-        return;
-    }
-    const Vec4 normal = direction(plane.normal);
-    x += push * normal;
-    // Motion against the skin in this substep: friction takes from its tangential part.
-    const Vec4 moved = x - particles.q[vertex] - substep * direction(plane.velocity);
-    const float along_normal = moved.dot(normal);
-    const Vec4 slide = moved - along_normal * normal;
-    const float length = slide.norm();
-    const float limit = settings.friction * push;
-    if (length <= settings.static_share * limit) {
-        x -= slide;
-    } else {
-        x -= (limit / length) * slide;
-    }
-    // Being pushed out of the body is no reason to fly off.
-    if (along_normal > 0.0f) {
-        particles.q[vertex] += along_normal * normal;
-    }
-}
-
-void Contacts::push_centre(const Particles& particles, const Triangle& corner, const Plane& plane,
-                           float since, float substep,
-                           const ContactSettings& settings) const noexcept {
-    const Vec4 x = particles.x[corner[0]] + particles.x[corner[1]] + particles.x[corner[2]];
-    const float height = plane.normal.dot(x) / 3.0f - plane.normal.w() - plane.velocity.w() * since;
-    const float push = settings.centre_offset - height;
-    const float weight = particles.w[corner[0]] + particles.w[corner[1]] + particles.w[corner[2]];
-    if (push <= 0.0f || weight <= 0.0f) {
-        return;
-    }
-    const Vec4 normal = direction(plane.normal);
-    const Vec4 q = particles.q[corner[0]] + particles.q[corner[1]] + particles.q[corner[2]];
-    const float moved = normal.dot(x - q) / 3.0f + push - substep * plane.velocity.w();
-    for (const std::uint32_t v : corner) {
-        const Vec4 shift = (3.0f * particles.w[v] / weight) * normal;
-        particles.x[v] += push * shift;
-        if (moved > 0.0f) {
-            particles.q[v] += std::min(moved, push) * shift;
-        }
-    }
-}
-
-void Contacts::resolve(const Particles& particles, float since, float substep,
-                       const ContactSettings& settings) const noexcept {
-    for (const std::vector<ActivePlane>* centres : {&other_centres_, &own_centres_}) {
-        for (const ActivePlane& active : *centres) {
-            push_centre(particles, triangles_[active.sample - vertex_count_], active.plane, since,
-                        substep, settings);
-        }
-    }
-    for (const std::vector<ActivePlane>* vertices : {&other_vertices_, &own_vertices_}) {
-        for (const ActivePlane& active : *vertices) {
-            push_vertex(particles, active.sample, active.plane, since, substep, settings);
-        }
-    }
-}
-
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth

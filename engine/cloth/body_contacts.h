@@ -2,9 +2,9 @@
 // over, the plane that stands for it between two refreshes, and the push with friction.
 #pragma once
 
-#include "bullet_cloth/moving_body.h"
+#include "cloth/moving_body.h"
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
 
 struct ContactSettings {
     float offset = 0.004f;        ///< m, vertices are kept this far out
@@ -23,6 +23,9 @@ struct Refresh {
     std::uint32_t phase; ///< whose turn it is: samples with index % phases == phase
     std::uint32_t phases;
     bool last; ///< end of the frame: every sample near the skin, nobody looks around
+    /// 0: on its turn every sample walks and every vertex looks around. Else who has not slid keeps
+    /// its place on the skin, and looks around on every fourth of its turns only; counts frames.
+    std::uint32_t lazy_frame = 0;
 };
 
 /// Positions x, those at the start of the substep q (their difference is the motion), and inverse
@@ -37,12 +40,12 @@ struct Particles {
 /// is kept outside of these however deep it got. Besides it may have one *other* place, a part
 /// that came near (a hand over the skirt, the second thigh), first met from outside. Where
 /// the body runs into itself and no room is left between both, the own place wins.
-class Contacts {
+class BodyContacts {
   public:
     /// \throw Error when joint rows do not match or no part of the body fits a vertex
-    Contacts(std::span<const Triangle> triangles, std::size_t vertex_count,
-             std::span<const std::array<std::uint16_t, 4>> joints,
-             std::span<const std::array<float, 4>> weights);
+    BodyContacts(std::span<const Triangle> triangles, std::size_t vertex_count,
+                 std::span<const std::array<std::uint16_t, 4>> joints,
+                 std::span<const std::array<float, 4>> weights);
 
     /// Finds each sample's place on the body at rest; `start` (nv) as bound to it.
     /// \throw Error when the body has no part that a vertex could lie on
@@ -93,8 +96,10 @@ class Contacts {
                       std::vector<ActivePlane>& own, std::vector<ActivePlane>& other) noexcept;
     [[nodiscard]] static Plane plane_at(const MovingBody& body, const Vec4& p,
                                         const SurfacePoint& at) noexcept;
-    [[nodiscard]] bool has_drifted(const MovingBody& body, const Vec4& v, std::size_t sample,
-                                   float seconds) noexcept;
+    [[nodiscard]] bool has_drifted(const MovingBody& body, const Vec4& p, const Vec4& v,
+                                   std::size_t sample, const Refresh& when) noexcept;
+    /// Its place on the skin moves with the skin.
+    void carry(const MovingBody& body, const Vec4& p, std::size_t sample) noexcept;
     [[nodiscard]] JointMask mask_for(std::size_t sample, const MovingBody& body,
                                      std::uint32_t triangle) const noexcept;
     void push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
@@ -109,9 +114,10 @@ class Contacts {
     std::vector<std::uint32_t> own_triangle_;    ///< (samples)
     std::vector<std::uint32_t> other_triangle_;  ///< (samples) or kNone
     std::vector<Plane> own_plane_, other_plane_; ///< (samples)
+    std::vector<std::array<float, 3>> own_place_; ///< (samples) barycentric
     std::vector<float> drift_; ///< (samples) m, at most slid over the skin since its last walk
     /// Planes within reach until the next refresh; capacity (samples).
     std::vector<ActivePlane> own_vertices_, other_vertices_, own_centres_, other_centres_;
 };
 
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth

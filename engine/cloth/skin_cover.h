@@ -1,9 +1,9 @@
 // The last look of a frame: body vertices that look through between a garment's samples.
 #pragma once
 
-#include "bullet_cloth/contacts.h"
+#include "cloth/body_contacts.h"
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
 
 /// Pairs of a garment triangle and a body vertex under it.
 class SkinCover {
@@ -12,7 +12,8 @@ class SkinCover {
     explicit SkinCover(std::size_t triangle_count) { pairs_.reserve(kMostSkin * triangle_count); }
 
     /// Collects the pairs that are close or worse, from the places found by the contacts.
-    void find(const MovingBody& body, const Contacts& contacts, std::span<const Vec4> x) noexcept;
+    void find(const MovingBody& body, const BodyContacts& contacts,
+              std::span<const Vec4> x) noexcept;
     /// Lifts the triangles of those pairs over their body vertices, along the skin's normals.
     void lift(const MovingBody& body, std::span<const Triangle> triangles, std::span<Vec4> x,
               std::span<const float> inverse_mass) const noexcept;
@@ -25,4 +26,4 @@ class SkinCover {
     std::vector<Pair> pairs_;
 };
 
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth

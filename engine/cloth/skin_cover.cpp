@@ -1,8 +1,8 @@
-#include "bullet_cloth/skin_cover.h"
+#include "cloth/skin_cover.h"
 
 #include <algorithm>
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
 namespace {
 
 constexpr float kLift = 0.001f;    ///< m, of the cloth over the skin
@@ -34,7 +34,7 @@ Crossing cross(const Vec4& from, const Vec4& up, const Triangle& corner, std::sp
 
 } // namespace
 
-void SkinCover::find(const MovingBody& body, const Contacts& contacts,
+void SkinCover::find(const MovingBody& body, const BodyContacts& contacts,
                      std::span<const Vec4> x) noexcept {
     pairs_.clear();
     const std::span<const Triangle> triangles = contacts.triangles();
@@ -100,4 +100,4 @@ void SkinCover::lift(const MovingBody& body, std::span<const Triangle> triangles
     }
 }
 
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth

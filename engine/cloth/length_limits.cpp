@@ -1,10 +1,10 @@
-#include "bullet_cloth/length_limits.h"
+#include "cloth/length_limits.h"
 
 #include <algorithm>
 #include <limits>
 #include <queue>
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
 namespace {
 
 struct Neighbour {
@@ -17,23 +17,19 @@ struct Graph {
     std::vector<std::uint32_t> first;
     std::vector<Neighbour> neighbours;
 
-    Graph(std::size_t vertex_count, std::span<const Spring> stretch, std::span<const Spring> bend)
-        : first(vertex_count + 1, 0), neighbours(2 * (stretch.size() + bend.size())) {
-        for (const std::span<const Spring> springs : {stretch, bend}) {
-            for (const Spring& spring : springs) {
-                ++first[spring.a + 1];
-                ++first[spring.b + 1];
-            }
+    Graph(std::size_t vertex_count, std::span<const MaterialPath> paths)
+        : first(vertex_count + 1, 0), neighbours(2 * paths.size()) {
+        for (const MaterialPath& path : paths) {
+            ++first[path.a + 1];
+            ++first[path.b + 1];
         }
         for (std::size_t v = 0; v < vertex_count; ++v) {
             first[v + 1] += first[v];
         }
         std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-        for (const std::span<const Spring> springs : {stretch, bend}) {
-            for (const Spring& spring : springs) {
-                neighbours[next[spring.a]++] = {spring.b, spring.rest};
-                neighbours[next[spring.b]++] = {spring.a, spring.rest};
-            }
+        for (const MaterialPath& path : paths) {
+            neighbours[next[path.a]++] = {path.b, path.length};
+            neighbours[next[path.b]++] = {path.a, path.length};
         }
     }
 };
@@ -89,11 +85,10 @@ class Paths {
 } // namespace
 
 std::vector<LengthLimit> make_length_limits(std::size_t vertex_count,
-                                            std::span<const Spring> stretch,
-                                            std::span<const Spring> bend, float reach) {
+                                            std::span<const MaterialPath> paths, float reach) {
     constexpr std::size_t kDirections = 4;
     constexpr float kNearest = 0.75f; // of the reach
-    const Graph graph(vertex_count, stretch, bend);
+    const Graph graph(vertex_count, paths);
     Paths from_start(graph);
     Paths from_chosen(graph);
     std::vector<LengthLimit> limits;
@@ -136,4 +131,4 @@ std::vector<LengthLimit> make_length_limits(std::size_t vertex_count,
     return limits;
 }
 
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth

@@ -2,12 +2,15 @@
 // by walking from triangle to triangle.
 #pragma once
 
-#include "bullet_cloth/link_solver.h"
+#include "core/types.h"
 #include "geometry/surface_walk.h"
 
 #include <array>
 
-namespace toile::bullet_cloth {
+namespace toile::cloth {
+
+/// Positions and other per-vertex vectors: x y z, and 0.
+using Vec4 = Vec4f;
 
 inline constexpr std::uint32_t kNone = geometry::kNoTriangle;
 inline constexpr std::size_t kBodyJoints = 22;
@@ -87,4 +90,4 @@ class MovingBody {
     float per_second_ = 0.0f; ///< 1 / dt
 };
 
-} // namespace toile::bullet_cloth
+} // namespace toile::cloth

@@ -1,0 +1,50 @@
+// Bending over every inner edge, from the angle between its two triangles.
+#pragma once
+
+#include "cloth/length_limits.h"
+#include "xpbd_cloth/membrane.h"
+
+namespace toile::xpbd_cloth {
+
+/// A flat material folded about an edge stores 3 l^2 B / (2 (A1 + A2)) theta^2. For cloth, which
+/// keeps its lengths, that is quadratic in the positions (Bergou et al. 2006, isometric bending):
+///     C = sum_i k_i x_i  (a vector, of length l theta for small angles),  compliance (A1 + A2) /
+///     (3 B).
+/// Its gradient does not change, so a hinge costs four rows, one dot product and no root.
+class Bending {
+  public:
+    /// `inverse_mass` (nv) 1/kg, 0 = held.
+    Bending(const ClothMesh& mesh, const Fabric& fabric, std::span<const float> inverse_mass);
+
+    void set_substep(float seconds) noexcept;
+    /// One pass. `x` (nv or more)
+    void solve(std::span<Vec4f> x) const noexcept;
+
+    [[nodiscard]] std::size_t hinge_count() const noexcept { return hinges_.size(); }
+
+  private:
+    struct Hinge {
+        std::uint32_t vertex[4]; ///< the edge's ends, then those opposite
+        float k[4];
+        float step[4]; ///< w_i k_i / (sum of w k^2 + compliance / h^2)
+    };
+    struct Softness {
+        float mass[4];    ///< 1/kg
+        float compliance; ///< 1/(N m)
+    };
+    std::vector<Hinge> hinges_;
+    std::vector<Softness> softness_; ///< of each hinge
+    float substep_ = 0.0f;
+};
+
+/// The mesh's edges, each once, a < b, in order of a and b.
+struct Edge {
+    std::uint32_t a, b;
+    float rest;  ///< m, of the material
+    bool border; ///< of one triangle only
+};
+[[nodiscard]] std::vector<Edge> material_edges(const ClothMesh& mesh);
+/// The edges, and the straight ways across each between the corners opposite it.
+[[nodiscard]] std::vector<cloth::MaterialPath> material_paths(const ClothMesh& mesh);
+
+} // namespace toile::xpbd_cloth

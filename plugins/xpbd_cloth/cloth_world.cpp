@@ -1,0 +1,181 @@
+#include "xpbd_cloth/cloth_world.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace toile::xpbd_cloth {
+namespace {
+
+/// How many substeps share one pass of the fabric's damping.
+constexpr std::uint32_t kDampEvery = 4;
+
+std::uint32_t rounds(double dt_s, double rate) {
+    return static_cast<std::uint32_t>(std::max(1.0, std::round(dt_s * rate)));
+}
+
+} // namespace
+
+void ClothWorld::set_body(const BodyRest& rest) {
+    MovingBody body(rest);
+    try {
+        for (Entry& entry : garments_) {
+            entry.cloth.bind(body);
+        }
+    } catch (...) {
+        for (Entry& entry : garments_) {
+            entry.cloth.bind(*rest_body_);
+        }
+        throw;
+    }
+    for (Entry& entry : garments_) {
+        entry.fresh = true;
+    }
+    rest_body_ = body;
+    body_ = std::move(body);
+}
+
+std::uint32_t ClothWorld::add_garment(const GarmentInput& input) {
+    if (!rest_body_) {
+        throw Error("add_garment: no body; call set_body first");
+    }
+    garments_.push_back({next_handle_, true, 0, GarmentCloth(input, *rest_body_, settings_)});
+    arrange();
+    return next_handle_++;
+}
+
+void ClothWorld::remove_garment(std::uint32_t garment) {
+    const auto it = std::find_if(garments_.begin(), garments_.end(),
+                                 [&](const Entry& entry) { return entry.handle == garment; });
+    if (it == garments_.end()) {
+        throw Error("remove_garment: there is no garment " + std::to_string(garment));
+    }
+    garments_.erase(it);
+    arrange();
+}
+
+void ClothWorld::arrange() {
+    std::size_t total = 0;
+    for (const Entry& entry : garments_) {
+        total += entry.cloth.vertex_count() + 1;
+    }
+    std::vector<Vec4> x(total, Vec4::Zero());
+    std::vector<Vec4> q(total, Vec4::Zero());
+    std::vector<Vec4> v(total, Vec4::Zero());
+    std::size_t first = 0;
+    known_.clear();
+    for (Entry& entry : garments_) {
+        const std::size_t rows = entry.cloth.vertex_count() + 1;
+        if (!entry.fresh) {
+            std::copy_n(x_.begin() + std::ptrdiff_t(entry.first), rows,
+                        x.begin() + std::ptrdiff_t(first));
+            std::copy_n(q_.begin() + std::ptrdiff_t(entry.first), rows,
+                        q.begin() + std::ptrdiff_t(first));
+            std::copy_n(v_.begin() + std::ptrdiff_t(entry.first), rows,
+                        v.begin() + std::ptrdiff_t(first));
+        }
+        entry.first = first;
+        first += rows;
+        known_.push_back({entry.handle, entry.cloth.vertex_count()});
+    }
+    x_.swap(x);
+    q_.swap(q);
+    v_.swap(v);
+    for (Entry& entry : garments_) {
+        const std::size_t rows = entry.cloth.vertex_count() + 1;
+        entry.cloth.use({std::span(x_).subspan(entry.first, rows),
+                         std::span(q_).subspan(entry.first, rows),
+                         std::span(v_).subspan(entry.first, rows)});
+    }
+}
+
+const GarmentCloth& ClothWorld::garment(std::uint32_t handle) const {
+    for (const Entry& entry : garments_) {
+        if (entry.handle == handle) {
+            return entry.cloth;
+        }
+    }
+    throw Error("there is no garment " + std::to_string(handle));
+}
+
+ClothWorld::Entry* ClothWorld::find(std::uint32_t handle) noexcept {
+    for (Entry& entry : garments_) {
+        if (entry.handle == handle) {
+            return &entry;
+        }
+    }
+    return nullptr;
+}
+
+std::uint32_t ClothWorld::substeps_of(double dt_s) const noexcept {
+    double rate = 1.0;
+    for (const Entry& entry : garments_) {
+        rate = std::max(rate, entry.cloth.substep_rate());
+    }
+    return rounds(dt_s, rate);
+}
+
+StepResult ClothWorld::step(const StepInput& input) noexcept {
+    StepResult result = cloth::check_step(input, body_ ? body_->vertex_count() : 0, known_);
+    if (result != StepResult::ok) {
+        return result;
+    }
+    const std::uint32_t count = substeps_of(input.dt_s);
+    const auto substep = static_cast<float>(input.dt_s / count);
+    body_->set_motion(input.body_before, input.body_after, static_cast<float>(input.dt_s));
+    for (const GarmentFrame& frame : input.garments) {
+        Entry& entry = *find(frame.garment);
+        entry.cloth.begin_step(frame.targets, substep);
+        if (input.reset || entry.fresh) {
+            entry.cloth.reset();
+            entry.fresh = false;
+        }
+    }
+    frame_ = input.reset ? 1 : frame_ % 4096 + 1;
+    const float since_last = substep > 0.0f ? simulate(input.dt_s, count) : 0.0f;
+    body_->place(1.0f);
+    for (const GarmentFrame& frame : input.garments) {
+        Entry& entry = *find(frame.garment);
+        if (!entry.cloth.finite()) {
+            entry.cloth.reset();
+            result = StepResult::recovered;
+        }
+        entry.cloth.clean_up(*body_, since_last);
+        cloth::write_frame(entry.cloth.positions(), entry.cloth.triangles(), frame);
+    }
+    return result;
+}
+
+float ClothWorld::simulate(double dt_s, std::uint32_t substeps) noexcept {
+    const std::uint32_t intervals = std::min(substeps, rounds(dt_s, settings_.contact_rate));
+    const auto substep = static_cast<float>(dt_s / substeps);
+    const float share = 1.0f / static_cast<float>(substeps);
+    std::uint32_t done = 0;
+    float last_half = 0.0f;
+    for (std::uint32_t i = 0; i < intervals; ++i) {
+        const std::uint32_t end = substeps * (i + 1) / intervals;
+        const Interval interval{i, intervals, end - done, substep, frame_};
+        last_half = 0.5f * interval.length();
+        body_->place(0.5f * share * static_cast<float>(done + end));
+        for (Entry& entry : garments_) {
+            entry.cloth.find_contacts(*body_, interval);
+        }
+        for (std::uint32_t s = 1; s <= interval.substeps; ++s) {
+            const float fraction = share * static_cast<float>(done + s);
+            const float since = static_cast<float>(s) * substep - last_half;
+            for (Entry& entry : garments_) {
+                entry.cloth.move(fraction, share, substep);
+            }
+            for (Entry& entry : garments_) {
+                entry.cloth.meet_body(since, substep);
+                entry.cloth.update_velocities(substep, (done + s) % kDampEvery == 0);
+            }
+        }
+        done = end;
+    }
+    return last_half;
+}
+
+} // namespace toile::xpbd_cloth

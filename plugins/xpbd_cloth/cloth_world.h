@@ -1,0 +1,63 @@
+// One person's cloth: the body, the garments on it, and the step that moves them.
+#pragma once
+
+#include "cloth/step.h"
+#include "xpbd_cloth/garment_cloth.h"
+
+#include <memory>
+#include <optional>
+
+namespace toile::xpbd_cloth {
+
+using cloth::BodyRest;
+using cloth::GarmentFrame;
+using cloth::KnownGarment;
+using cloth::step_result_text;
+using cloth::StepInput;
+using cloth::StepResult;
+
+class ClothWorld {
+  public:
+    explicit ClothWorld(const Settings& settings = {}) : settings_(settings) {}
+
+    /// Garments already here are bound to the new body and begin anew. \throw Error
+    void set_body(const BodyRest& rest);
+    /// Handle, never 0. \throw Error naming what is wrong with the garment
+    std::uint32_t add_garment(const GarmentInput& input);
+    /// \throw Error when there is no such garment
+    void remove_garment(std::uint32_t garment);
+
+    /// Moves every garment by one frame. Allocates nothing; refuses before it changes anything.
+    StepResult step(const StepInput& input) noexcept;
+
+    [[nodiscard]] std::size_t garment_count() const noexcept { return garments_.size(); }
+    /// \throw Error when there is no such garment
+    [[nodiscard]] const GarmentCloth& garment(std::uint32_t handle) const;
+    void set_settings(const Settings& settings) { settings_ = settings; }
+
+  private:
+    struct Entry {
+        std::uint32_t handle;
+        bool fresh = true;     ///< begins from its targets at the next step
+        std::size_t first = 0; ///< of its rows
+        GarmentCloth cloth;
+    };
+
+    /// Gives every garment its rows and lists them; those that had some keep what they hold.
+    void arrange();
+    [[nodiscard]] Entry* find(std::uint32_t handle) noexcept;
+    /// \return seconds from the last refresh of the contacts to the end of the step
+    float simulate(double dt_s, std::uint32_t substeps) noexcept;
+    [[nodiscard]] std::uint32_t substeps_of(double dt_s) const noexcept;
+
+    Settings settings_;
+    std::optional<MovingBody> rest_body_; ///< stays as it was given
+    std::optional<MovingBody> body_;
+    std::vector<Entry> garments_;
+    std::vector<KnownGarment> known_; ///< the same, as the check of a step reads them
+    std::vector<Vec4> x_, q_, v_;     ///< rows of all garments
+    std::uint32_t next_handle_ = 1;
+    std::uint32_t frame_ = 1; ///< steps since the last reset
+};
+
+} // namespace toile::xpbd_cloth

@@ -1,0 +1,47 @@
+#include "xpbd_cloth/colouring.h"
+
+#include <bit>
+
+namespace toile::xpbd_cloth {
+
+std::vector<std::uint32_t> coloured_order(std::span<const std::uint32_t> corners, std::size_t per,
+                                          std::size_t vertex_count, std::size_t group) {
+    // Colours used at each vertex, 64 at a time; what finds none of them waits for the next 64.
+    std::vector<std::vector<std::uint32_t>> colours;
+    std::vector<std::uint32_t> waiting(corners.size() / per);
+    for (std::uint32_t c = 0; c < waiting.size(); ++c) {
+        waiting[c] = c;
+    }
+    while (!waiting.empty()) {
+        std::vector<std::uint64_t> used(vertex_count, 0);
+        std::vector<std::uint32_t> left;
+        const std::size_t base = colours.size();
+        for (const std::uint32_t c : waiting) {
+            std::uint64_t taken = 0;
+            for (std::size_t k = 0; k < per; ++k) {
+                taken |= used[corners[c * per + k]];
+            }
+            const auto colour = static_cast<std::size_t>(std::countr_one(taken));
+            if (colour >= 64) {
+                left.push_back(c);
+                continue;
+            }
+            for (std::size_t k = 0; k < per; ++k) {
+                used[corners[c * per + k]] |= std::uint64_t{1} << colour;
+            }
+            if (colours.size() <= base + colour) {
+                colours.resize(base + colour + 1);
+            }
+            colours[base + colour].push_back(c);
+        }
+        waiting.swap(left);
+    }
+    std::vector<std::uint32_t> order;
+    for (const std::vector<std::uint32_t>& colour : colours) {
+        order.insert(order.end(), colour.begin(), colour.end());
+        order.resize((order.size() + group - 1) / group * group, kNoConstraint);
+    }
+    return order;
+}
+
+} // namespace toile::xpbd_cloth
