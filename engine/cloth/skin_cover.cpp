@@ -16,7 +16,8 @@ struct Crossing {
     bool inside; ///< of the triangle, and facing out
 };
 
-inline Crossing cross(const Vec4& from, const Vec4& up, const Triangle& corner, std::span<const Vec4> x) {
+inline Crossing cross(const Vec4& from, const Vec4& up, const Triangle& corner,
+                      std::span<const Vec4> x) {
     const Vec4 ab = x[corner[1]] - x[corner[0]];
     const Vec4 ac = x[corner[2]] - x[corner[0]];
     const Vec4 area = ab.cross3(ac);

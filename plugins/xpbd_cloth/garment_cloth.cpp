@@ -69,8 +69,8 @@ std::vector<Link> length_limits(const ClothMesh& mesh, float mean_edge, const Se
     return links;
 }
 
-/// Openings carry a garment's weight along their edge, where a pass gets from one vertex to the next
-/// only; there are few of these edges, so they get many passes.
+/// Openings carry a garment's weight along their edge, where a pass gets from one vertex to the
+/// next only; there are few of these edges, so they get many passes.
 std::vector<Link> border_limits(const ClothMesh& mesh, float strain_limit) {
     std::vector<Link> links;
     for (const Edge& edge : material_edges(mesh)) {
@@ -149,10 +149,10 @@ void GarmentCloth::find_contacts(const MovingBody& body, const Interval& interva
     const float since_last = interval.index == 0 ? half : 2.0f * half;
     period_ = interval.length() * static_cast<float>(interval.of);
     const std::size_t count = start_.size();
-    contacts_.refresh(body, rows_.x.first(count), rows_.v.first(count),
-                      {half, since_last, half, period_, interval.index, interval.of, false,
-                       interval.frame},
-                      contact_);
+    contacts_.refresh(
+        body, rows_.x.first(count), rows_.v.first(count),
+        {half, since_last, half, period_, interval.index, interval.of, false, interval.frame},
+        contact_);
 }
 
 void GarmentCloth::move(float fraction, float share, float substep) noexcept {
@@ -238,8 +238,8 @@ void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
     const std::size_t count = start_.size();
     const std::span<Vec4> x = rows_.x.first(count);
     const std::span<Vec4> q = rows_.q.first(count);
-    contacts_.refresh(body, x, rows_.v.first(count), {0.0f, since_last, 0.0f, period_, 0, 1, true, 1},
-                      still);
+    contacts_.refresh(body, x, rows_.v.first(count),
+                      {0.0f, since_last, 0.0f, period_, 0, 1, true, 1}, still);
     std::copy(x.begin(), x.end(), q.begin());
     cover_.find(body, contacts_, x);
     for (int pass = 0; pass < static_cast<int>(settings_.clean_passes); ++pass) {
