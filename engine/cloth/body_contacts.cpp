@@ -267,7 +267,8 @@ bool BodyContacts::has_drifted(const MovingBody& body, const Vec4& p, const Vec4
     const float sliding = direction(v - plane.velocity).norm();
     const float turning = kTurning * body.speed_of(body.joint_of(own_triangle_[sample]));
     drift_[sample] += (sliding + turning) * when.since_last;
-    const float aloft = when.lazy_frame != 0 ? kAloft * (plane.normal.dot(p) - plane.normal.w()) : 0;
+    const float aloft =
+        when.lazy_frame != 0 ? kAloft * (plane.normal.dot(p) - plane.normal.w()) : 0;
     return drift_[sample] > std::max(kFar, aloft);
 }
 
@@ -292,8 +293,8 @@ void BodyContacts::refresh_vertex(const MovingBody& body, const Vec4& p, const V
     plane.normal.w() += plane.velocity.w() * when.since_last;
     const bool unknown = other_triangle_[vertex] != kNone || is_nowhere(plane.normal);
     const bool drifted = has_drifted(body, p, v, vertex, when);
-    const bool near = unknown || (drifted && is_near(plane.normal, plane.velocity, p, v, kNearSkin,
-                                                     when.period));
+    const bool near =
+        unknown || (drifted && is_near(plane.normal, plane.velocity, p, v, kNearSkin, when.period));
     const bool looks = turn && (when.lazy_frame == 0 || (vertex + when.lazy_frame) % kLook == 0);
     if (!near && !looks && !(turn && drifted)) {
         if (turn) {

@@ -109,11 +109,11 @@ class BodyContacts {
 
     std::vector<Triangle> triangles_;
     std::size_t vertex_count_;
-    std::vector<JointMask> mask_;                ///< (samples) parts that it covers
-    std::vector<std::uint32_t> anchor_;          ///< (samples) triangle under it as bound
-    std::vector<std::uint32_t> own_triangle_;    ///< (samples)
-    std::vector<std::uint32_t> other_triangle_;  ///< (samples) or kNone
-    std::vector<Plane> own_plane_, other_plane_; ///< (samples)
+    std::vector<JointMask> mask_;                 ///< (samples) parts that it covers
+    std::vector<std::uint32_t> anchor_;           ///< (samples) triangle under it as bound
+    std::vector<std::uint32_t> own_triangle_;     ///< (samples)
+    std::vector<std::uint32_t> other_triangle_;   ///< (samples) or kNone
+    std::vector<Plane> own_plane_, other_plane_;  ///< (samples)
     std::vector<std::array<float, 3>> own_place_; ///< (samples) barycentric
     std::vector<float> drift_; ///< (samples) m, at most slid over the skin since its last walk
     /// Planes within reach until the next refresh; capacity (samples).

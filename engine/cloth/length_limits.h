@@ -22,8 +22,7 @@ struct LengthLimit {
 
 /// From every vertex up to four limits of about `reach` metres in directions far from each other;
 /// sorted by vertices, each pair once.
-[[nodiscard]] std::vector<LengthLimit> make_length_limits(std::size_t vertex_count,
-                                                          std::span<const MaterialPath> paths,
-                                                          float reach);
+[[nodiscard]] std::vector<LengthLimit>
+make_length_limits(std::size_t vertex_count, std::span<const MaterialPath> paths, float reach);
 
 } // namespace toile::cloth

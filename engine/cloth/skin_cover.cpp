@@ -7,7 +7,6 @@ namespace {
 
 constexpr float kLift = 0.001f;    ///< m, of the cloth over the skin
 constexpr float kDeepest = -0.03f; ///< m, beyond it is another part
-constexpr float kClose = 0.008f;   ///< m, triangles further out cannot show skin
 
 /// Where the line from a body vertex along its normal meets a garment triangle.
 struct Crossing {
@@ -16,7 +15,8 @@ struct Crossing {
     bool inside; ///< of the triangle, and facing out
 };
 
-Crossing cross(const Vec4& from, const Vec4& up, const Triangle& corner, std::span<const Vec4> x) {
+inline Crossing cross(const Vec4& from, const Vec4& up, const Triangle& corner,
+                      std::span<const Vec4> x) {
     const Vec4 ab = x[corner[1]] - x[corner[0]];
     const Vec4 ac = x[corner[2]] - x[corner[0]];
     const Vec4 area = ab.cross3(ac);
@@ -35,7 +35,7 @@ Crossing cross(const Vec4& from, const Vec4& up, const Triangle& corner, std::sp
 } // namespace
 
 void SkinCover::find(const MovingBody& body, const BodyContacts& contacts,
-                     std::span<const Vec4> x) noexcept {
+                     std::span<const Vec4> x, float close) noexcept {
     pairs_.clear();
     const std::span<const Triangle> triangles = contacts.triangles();
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
@@ -47,7 +47,7 @@ void SkinCover::find(const MovingBody& body, const BodyContacts& contacts,
         const Triangle& below = body.triangles()[under];
         const Vec4 centre = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f;
         const float above = (centre - body.positions()[below[0]]).dot(body.normals()[below[0]]);
-        if (above > 2.0f * kClose) {
+        if (above > 2.0f * close) {
             continue;
         }
         std::array<std::uint32_t, kMostSkin> skin{below[0], below[1], below[2]};
@@ -68,7 +68,7 @@ void SkinCover::find(const MovingBody& body, const BodyContacts& contacts,
         for (std::size_t k = 0; k < count; ++k) {
             const Crossing found =
                 cross(body.positions()[skin[k]], body.normals()[skin[k]], corner, x);
-            if (found.inside && found.height < kClose && found.height > kDeepest) {
+            if (found.inside && found.height < close && found.height > kDeepest) {
                 pairs_.push_back({t, skin[k]});
             }
         }

@@ -12,8 +12,9 @@ class SkinCover {
     explicit SkinCover(std::size_t triangle_count) { pairs_.reserve(kMostSkin * triangle_count); }
 
     /// Collects the pairs that are close or worse, from the places found by the contacts.
-    void find(const MovingBody& body, const BodyContacts& contacts,
-              std::span<const Vec4> x) noexcept;
+    /// `close` (m): cloth further out than this stays there.
+    void find(const MovingBody& body, const BodyContacts& contacts, std::span<const Vec4> x,
+              float close = 0.008f) noexcept;
     /// Lifts the triangles of those pairs over their body vertices, along the skin's normals.
     void lift(const MovingBody& body, std::span<const Triangle> triangles, std::span<Vec4> x,
               std::span<const float> inverse_mass) const noexcept;

@@ -122,8 +122,8 @@ ClothModel make_cloth_model(const ClothMesh& mesh, const Fabric& fabric, float l
                 paths.push_back({spring.a, spring.b, spring.rest});
             }
         }
-        model.limits = cloth::make_length_limits(mesh.positions.size(), paths,
-                                                 limit_edges * model.mean_edge);
+        model.limits =
+            cloth::make_length_limits(mesh.positions.size(), paths, limit_edges * model.mean_edge);
     }
     const float seam_stiffness = 0.5f * (fabric.stretch_warp + fabric.stretch_weft);
     for (const auto& seam : mesh.seams) {

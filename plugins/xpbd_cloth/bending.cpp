@@ -61,7 +61,8 @@ std::vector<Edge> material_edges(const ClothMesh& mesh) {
         while (end < sides.size() && same_edge(sides[end], sides[i])) {
             length += sides[end++].length;
         }
-        edges.push_back({sides[i].a, sides[i].b, length / static_cast<float>(end - i), end - i == 1});
+        edges.push_back(
+            {sides[i].a, sides[i].b, length / static_cast<float>(end - i), end - i == 1});
         i = end;
     }
     return edges;

@@ -83,6 +83,13 @@ void ClothWorld::arrange() {
     x_.swap(x);
     q_.swap(q);
     v_.swap(v);
+    std::vector<cloth::ClothPart> parts;
+    for (Entry& entry : garments_) {
+        const GarmentCloth& cloth = entry.cloth;
+        parts.push_back({entry.first, cloth.start(), cloth.triangles(), cloth.inverse_mass(),
+                         cloth.layer(), cloth.mean_edge(), cloth.thickness(), cloth.friction()});
+    }
+    cloth_contacts_.arrange(parts, total);
     for (Entry& entry : garments_) {
         const std::size_t rows = entry.cloth.vertex_count() + 1;
         entry.cloth.use({std::span(x_).subspan(entry.first, rows),
@@ -133,6 +140,9 @@ StepResult ClothWorld::step(const StepInput& input) noexcept {
             entry.fresh = false;
         }
     }
+    if (input.reset) {
+        cloth_contacts_.reset();
+    }
     frame_ = input.reset ? 1 : frame_ % 4096 + 1;
     const float since_last = substep > 0.0f ? simulate(input.dt_s, count) : 0.0f;
     body_->place(1.0f);
@@ -162,11 +172,17 @@ float ClothWorld::simulate(double dt_s, std::uint32_t substeps) noexcept {
         for (Entry& entry : garments_) {
             entry.cloth.find_contacts(*body_, interval);
         }
+        if (settings_.self_contact > 0.0) {
+            cloth_contacts_.find(x_, frame_);
+        }
         for (std::uint32_t s = 1; s <= interval.substeps; ++s) {
             const float fraction = share * static_cast<float>(done + s);
             const float since = static_cast<float>(s) * substep - last_half;
             for (Entry& entry : garments_) {
                 entry.cloth.move(fraction, share, substep);
+            }
+            if (settings_.self_contact > 0.0) {
+                cloth_contacts_.resolve(x_, q_);
             }
             for (Entry& entry : garments_) {
                 entry.cloth.meet_body(since, substep);

@@ -1,6 +1,7 @@
 // One person's cloth: the body, the garments on it, and the step that moves them.
 #pragma once
 
+#include "cloth/cloth_contacts.h"
 #include "cloth/step.h"
 #include "xpbd_cloth/garment_cloth.h"
 
@@ -56,6 +57,7 @@ class ClothWorld {
     std::vector<Entry> garments_;
     std::vector<KnownGarment> known_; ///< the same, as the check of a step reads them
     std::vector<Vec4> x_, q_, v_;     ///< rows of all garments
+    cloth::ClothContacts cloth_contacts_;
     std::uint32_t next_handle_ = 1;
     std::uint32_t frame_ = 1; ///< steps since the last reset
 };

@@ -106,11 +106,11 @@ class XpbdCloth {
 
     double& parameter(std::size_t index) {
         const std::array<double*, parameters.size()> all{
-            &settings_.substep_rate,   &settings_.wave_speed,   &settings_.contact_rate,
-            &settings_.margin,         &settings_.strain_limit, &settings_.limit_edges, &settings_.border_passes, &settings_.leash,
-            &settings_.pull_rate,      &settings_.air_drag,     &settings_.damping_scale,
-            &settings_.friction_scale, &settings_.clean_passes, &settings_.self_contact,
-            &settings_.gravity};
+            &settings_.substep_rate,  &settings_.wave_speed,    &settings_.contact_rate,
+            &settings_.margin,        &settings_.strain_limit,  &settings_.limit_edges,
+            &settings_.border_passes, &settings_.leash,         &settings_.pull_rate,
+            &settings_.air_drag,      &settings_.damping_scale, &settings_.friction_scale,
+            &settings_.clean_passes,  &settings_.self_contact,  &settings_.gravity};
         return *all[index];
     }
     void activate(const toile_limits&) { world_.set_settings(settings_); }

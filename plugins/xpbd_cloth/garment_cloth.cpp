@@ -69,8 +69,8 @@ std::vector<Link> length_limits(const ClothMesh& mesh, float mean_edge, const Se
     return links;
 }
 
-/// Openings carry a garment's weight along their edge, where a pass gets from one vertex to the next
-/// only; there are few of these edges, so they get many passes.
+/// Openings carry a garment's weight along their edge, where a pass gets from one vertex to the
+/// next only; there are few of these edges, so they get many passes.
 std::vector<Link> border_limits(const ClothMesh& mesh, float strain_limit) {
     std::vector<Link> links;
     for (const Edge& edge : material_edges(mesh)) {
@@ -127,7 +127,7 @@ void GarmentCloth::begin_step(std::span<const Vec3f> targets, float substep) noe
     std::transform(targets.begin(), targets.end(), target_after_.begin(), to_vec4);
     if (substep > 0.0f) {
         membrane_.set_substep(substep);
-        bending_.set_substep(substep);
+        bending_.set_substep(2.0f * substep); // a pass serves two
         seams_.set_substep(substep);
         limits_.set_substep(substep);
         borders_.set_substep(substep);
@@ -140,6 +140,7 @@ void GarmentCloth::reset() noexcept {
     std::copy(target_after_.begin(), target_after_.end(), rows_.q.begin());
     std::fill(rows_.v.begin(), rows_.v.end(), Vec4::Zero());
     since_damped_ = 0.0f;
+    bends_ = true;
     contacts_.reset();
 }
 
@@ -149,15 +150,18 @@ void GarmentCloth::find_contacts(const MovingBody& body, const Interval& interva
     const float since_last = interval.index == 0 ? half : 2.0f * half;
     period_ = interval.length() * static_cast<float>(interval.of);
     const std::size_t count = start_.size();
-    contacts_.refresh(body, rows_.x.first(count), rows_.v.first(count),
-                      {half, since_last, half, period_, interval.index, interval.of, false,
-                       interval.frame},
-                      contact_);
+    contacts_.refresh(
+        body, rows_.x.first(count), rows_.v.first(count),
+        {half, since_last, half, period_, interval.index, interval.of, false, interval.frame},
+        contact_);
 }
 
 void GarmentCloth::move(float fraction, float share, float substep) noexcept {
     predict(fraction, substep);
-    bending_.solve(rows_.x);
+    if (bends_) {
+        bending_.solve(rows_.x);
+    }
+    bends_ = !bends_;
     seams_.solve(rows_.x);
     membrane_.solve(rows_.x);
     limits_.solve(rows_.x);
@@ -238,10 +242,10 @@ void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
     const std::size_t count = start_.size();
     const std::span<Vec4> x = rows_.x.first(count);
     const std::span<Vec4> q = rows_.q.first(count);
-    contacts_.refresh(body, x, rows_.v.first(count), {0.0f, since_last, 0.0f, period_, 0, 1, true, 1},
-                      still);
+    contacts_.refresh(body, x, rows_.v.first(count),
+                      {0.0f, since_last, 0.0f, period_, 0, 1, true, 1}, still);
     std::copy(x.begin(), x.end(), q.begin());
-    cover_.find(body, contacts_, x);
+    cover_.find(body, contacts_, x, 0.008f);
     for (int pass = 0; pass < static_cast<int>(settings_.clean_passes); ++pass) {
         cover_.lift(body, contacts_.triangles(), x, inverse_mass_);
         contacts_.resolve({x, q, inverse_mass_}, 0.0f, 0.0f, still);

@@ -6,11 +6,11 @@ namespace toile::xpbd_cloth {
 struct Settings {
     double substep_rate = 0.0;   ///< 1/s; 0: from the mesh, `wave_speed` over its mean edge
     double wave_speed = 20.0;    ///< m/s, mesh edges that a pull travels in a second
-    double contact_rate = 60.0 ; ///< 1/s, refreshes of the contact planes
+    double contact_rate = 60.0;  ///< 1/s, refreshes of the contact planes
     double margin = 0.003;       ///< m, kept free between skin and cloth
     double strain_limit = 0.03;  ///< longest that cloth gets over its material; 0: none
     double limit_edges = 4.0;    ///< reach of the longer limits, mesh edges; 0: none
-    double border_passes = 8.0;  ///< over the edges of openings, each substep
+    double border_passes = 16.0; ///< over the edges of openings, each substep
     double leash = 0.25;         ///< m, farthest a free vertex may be from its target
     double pull_rate = 60.0;     ///< rad/s, of a vertex with attachment 0.5 about its target
     double air_drag = 1.0;       ///< 1/s

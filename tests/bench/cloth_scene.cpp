@@ -143,8 +143,8 @@ ClothScene::ClothScene(const std::filesystem::path& folder, const std::string& l
 void ClothScene::pose(const std::vector<Vec3f>& rest, const std::vector<std::array<float, 2>>& arm,
                       double time_s, std::vector<Vec3f>& posed) {
     const Vec3f joint[2] = {{0.1677125f, 0.52458f, 0.014605f}, {-0.1677125f, 0.52458f, 0.014605f}};
-    const float angle = 0.25f * std::numbers::pi_v<float> *
-                        (smoothstep(time_s - 0.5) - smoothstep(time_s - 1.5));
+    const float angle =
+        0.25f * std::numbers::pi_v<float> * (smoothstep(time_s - 0.5) - smoothstep(time_s - 1.5));
     const Eigen::AngleAxisf turn[2] = {{angle, Vec3f::UnitZ()}, {-angle, Vec3f::UnitZ()}};
     posed = rest;
     for (std::size_t v = 0; v < rest.size(); ++v) {

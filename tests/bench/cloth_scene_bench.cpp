@@ -90,9 +90,8 @@ class Dress {
           targets(scene.cloth.positions), positions(targets), normals(targets) {
         const auto& parameters = instance_.table<toile_parameters>();
         for (const auto& [id, value] : options.parameters)
-            instance_.call(id.c_str(), [&](toile_instance* i) {
-                return parameters.set(i, id.c_str(), value);
-            });
+            instance_.call(id.c_str(),
+                           [&](toile_instance* i) { return parameters.set(i, id.c_str(), value); });
         auto limits = host::sized<toile_limits>();
         limits.thread_count = 1;
         instance_.activate(limits);
@@ -140,9 +139,8 @@ class Dress {
         body.joint_indices = host::view_of(joints);
         body.joint_weights = host::view_of(weights);
         host::Job job;
-        instance_.call("set_body", [&](toile_instance* i) {
-            return table_.set_body(i, &body, job.handle());
-        });
+        instance_.call("set_body",
+                       [&](toile_instance* i) { return table_.set_body(i, &body, job.handle()); });
         auto dress = host::sized<toile_cloth_garment>();
         dress.rest.positions = host::view_of(scene_.cloth.positions);
         dress.rest.triangles = host::view_of(scene_.cloth.triangles);
@@ -215,25 +213,26 @@ nlohmann::ordered_json run(const bench::ClothScene& scene, host::Registry& regis
     const double speed = std::sqrt(moved) / bench::ClothScene::kFrame;
     if (!options.out.empty()) {
         std::filesystem::create_directories(options.out);
-        bench::write_scene_mesh(options.out / "cloth.obj", {dress.positions, scene.cloth.triangles});
+        bench::write_scene_mesh(options.out / "cloth.obj",
+                                {dress.positions, scene.cloth.triangles});
         bench::write_scene_mesh(options.out / "body.obj", {dress.after, scene.body.triangles});
     }
-    return {{"vertices", scene.cloth.positions.size()},
-            {"cpu_ms_median", times[times.size() / 2]},
-            {"cpu_ms_p95", times[times.size() * 95 / 100]},
-            {"strain_max", strain.largest},
-            {"strain_rms", strain.rms},
-            {"strain_p99", strain.p99},
-            {"deep_worst_frame", worst.deep},
-            {"deep_frames", deep_frames},
-            {"deepest_mm", 1e3f * worst.deepest},
-            {"body_vertices_through", worst.through},
-            {"self_intersections", measure.self_intersections(dress.positions)},
-            {"stays_on_shoulders",
-             highest(dress.positions) > highest(scene.cloth.positions) - 0.05f},
-            {"finite", worst.finite},
-            {"speed_rms_m_s", speed},
-            {"at_rest", speed < 0.01}};
+    return {
+        {"vertices", scene.cloth.positions.size()},
+        {"cpu_ms_median", times[times.size() / 2]},
+        {"cpu_ms_p95", times[times.size() * 95 / 100]},
+        {"strain_max", strain.largest},
+        {"strain_rms", strain.rms},
+        {"strain_p99", strain.p99},
+        {"deep_worst_frame", worst.deep},
+        {"deep_frames", deep_frames},
+        {"deepest_mm", 1e3f * worst.deepest},
+        {"body_vertices_through", worst.through},
+        {"self_intersections", measure.self_intersections(dress.positions)},
+        {"stays_on_shoulders", highest(dress.positions) > highest(scene.cloth.positions) - 0.05f},
+        {"finite", worst.finite},
+        {"speed_rms_m_s", speed},
+        {"at_rest", speed < 0.01}};
 }
 
 } // namespace

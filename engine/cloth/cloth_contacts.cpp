@@ -1,0 +1,260 @@
+#include "cloth/cloth_contacts.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace toile::cloth {
+namespace {
+
+/// Barycentric place of p over a triangle, moved onto it where it is beside.
+std::array<float, 3> place_over(const Vec4f& p, const Vec4f& a, const Vec4f& b, const Vec4f& c) {
+    const Vec4f ab = b - a;
+    const Vec4f ac = c - a;
+    const Vec4f ap = p - a;
+    const float bb = ab.dot(ab);
+    const float bc = ab.dot(ac);
+    const float cc = ac.dot(ac);
+    const float det = std::max(bb * cc - bc * bc, 1e-20f);
+    float v = (cc * ab.dot(ap) - bc * ac.dot(ap)) / det;
+    float w = (bb * ac.dot(ap) - bc * ab.dot(ap)) / det;
+    v = std::clamp(v, 0.0f, 1.0f);
+    w = std::clamp(w, 0.0f, 1.0f);
+    const float sum = std::max(1.0f, v + w);
+    return {1.0f - (v + w) / sum, v / sum, w / sum};
+}
+
+} // namespace
+
+void ClothContacts::arrange(std::span<const ClothPart> parts, std::size_t rows) {
+    constexpr float kSamePiece = 4.0f; // edges
+    parts_.assign(parts.begin(), parts.end());
+    vertices_.assign(rows, {});
+    triangles_.clear();
+    float longest_edge = 0.0f;
+    for (std::uint32_t k = 0; k < parts.size(); ++k) {
+        const ClothPart& part = parts[k];
+        longest_edge = std::max(longest_edge, part.mean_edge);
+        for (std::size_t v = 0; v < part.start.size(); ++v) {
+            vertices_[part.first + v] = {part.start[v], part.inverse_mass[v],
+                                         kSamePiece * part.mean_edge, k};
+        }
+        const auto base = static_cast<std::uint32_t>(part.first);
+        for (const Triangle& t : part.triangles) {
+            triangles_.push_back({t[0] + base, t[1] + base, t[2] + base});
+        }
+    }
+    reach_ = std::clamp(0.6f * longest_edge, 0.004f, 0.01f);
+    radius_ = 0.8f * longest_edge + reach_;
+    star_first_.assign(rows + 1, 0);
+    for (const Triangle& t : triangles_) {
+        for (const std::uint32_t v : t) {
+            ++star_first_[v + 1];
+        }
+    }
+    for (std::size_t v = 0; v < rows; ++v) {
+        star_first_[v + 1] += star_first_[v];
+    }
+    star_.resize(3 * triangles_.size());
+    std::vector<std::uint32_t> next(star_first_.begin(), star_first_.end() - 1);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+        for (const std::uint32_t v : triangles_[t]) {
+            star_[next[v]++] = t;
+        }
+    }
+    cell_first_.assign(std::bit_ceil(std::max<std::size_t>(2 * rows, 16)) + 1, 0);
+    cell_rows_.assign(rows, 0);
+    cell_.assign(rows, 0);
+    met_.assign(rows, kNobody);
+    side_.assign(rows, 0.0f);
+    contacts_.clear();
+    contacts_.reserve(rows);
+}
+
+void ClothContacts::reset() noexcept {
+    std::fill(met_.begin(), met_.end(), kNobody);
+    std::fill(side_.begin(), side_.end(), 0.0f);
+    contacts_.clear();
+}
+
+std::uint32_t ClothContacts::cell_of(int cx, int cy, int cz) const noexcept {
+    const std::uint32_t hash = static_cast<std::uint32_t>(cx) * 73856093u ^
+                               static_cast<std::uint32_t>(cy) * 19349663u ^
+                               static_cast<std::uint32_t>(cz) * 83492791u;
+    return hash & static_cast<std::uint32_t>(cell_first_.size() - 2);
+}
+
+void ClothContacts::sort_into_cells(std::span<const Vec4f> x) noexcept {
+    const float per_cell = 1.0f / radius_;
+    std::fill(cell_first_.begin(), cell_first_.end(), 0u);
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        cell_[v] = cell_of(static_cast<int>(std::floor(x[v].x() * per_cell)),
+                           static_cast<int>(std::floor(x[v].y() * per_cell)),
+                           static_cast<int>(std::floor(x[v].z() * per_cell)));
+        if (vertices_[v].part != kNobody) {
+            ++cell_first_[cell_[v]];
+        }
+    }
+    std::uint32_t sum = 0;
+    for (std::uint32_t& first : cell_first_) {
+        sum += first;
+        first = sum; // the end of the cell: filling backwards leaves the beginning
+    }
+    for (std::size_t v = vertices_.size(); v-- > 0;) {
+        if (vertices_[v].part != kNobody) {
+            cell_rows_[--cell_first_[cell_[v]]] = static_cast<std::uint32_t>(v);
+        }
+    }
+}
+
+/// The nearest vertex of another piece of cloth, of equally near ones the lowest.
+std::uint32_t ClothContacts::nearest_other(std::span<const Vec4f> x,
+                                           std::uint32_t vertex) const noexcept {
+    const Vec4f& p = x[vertex];
+    const Vertex& mine = vertices_[vertex];
+    const float per_cell = 1.0f / radius_;
+    const auto low = [&](float value) { return int(std::floor((value - radius_) * per_cell)); };
+    std::uint32_t best = kNobody;
+    float least = radius_ * radius_;
+    for (int cx = low(p.x()); cx <= low(p.x()) + 2; ++cx) {
+        for (int cy = low(p.y()); cy <= low(p.y()) + 2; ++cy) {
+            for (int cz = low(p.z()); cz <= low(p.z()) + 2; ++cz) {
+                const std::uint32_t cell = cell_of(cx, cy, cz);
+                for (std::uint32_t k = cell_first_[cell]; k < cell_first_[cell + 1]; ++k) {
+                    const std::uint32_t other = cell_rows_[k];
+                    const float squared = (x[other] - p).squaredNorm();
+                    const bool nearer = squared < least || (squared == least && other < best);
+                    if (nearer && !same_piece(mine, vertices_[other])) {
+                        least = squared;
+                        best = other;
+                    }
+                }
+            }
+        }
+    }
+    return best;
+}
+
+/// Lists the contact of a vertex with the nearest triangle at another one.
+void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex,
+                         std::uint32_t other) noexcept {
+    const Vec4f& p = x[vertex];
+    float least = reach_ * reach_;
+    std::uint32_t nearest = kNobody;
+    std::array<float, 3> place{};
+    for (std::uint32_t s = star_first_[other]; s < star_first_[other + 1]; ++s) {
+        const Triangle& t = triangles_[star_[s]];
+        const std::array<float, 3> over = place_over(p, x[t[0]], x[t[1]], x[t[2]]);
+        const Vec4f at = over[0] * x[t[0]] + over[1] * x[t[1]] + over[2] * x[t[2]];
+        const float squared = (p - at).squaredNorm();
+        if (squared < least) {
+            least = squared;
+            nearest = star_[s];
+            place = over;
+        }
+    }
+    if (nearest == kNobody) {
+        met_[vertex] = kNobody;
+        return;
+    }
+    const Triangle& t = triangles_[nearest];
+    const ClothPart& mine = parts_[vertices_[vertex].part];
+    const ClothPart& theirs = parts_[vertices_[t[0]].part];
+    const Vec4f normal = (x[t[1]] - x[t[0]]).cross3(x[t[2]] - x[t[0]]);
+    const float height = (p - x[t[0]]).dot(normal);
+    if (mine.layer != theirs.layer) {
+        side_[vertex] = mine.layer > theirs.layer ? 1.0f : -1.0f;
+    } else if (met_[vertex] == kNobody ||
+               !same_piece(vertices_[triangles_[met_[vertex]][0]], vertices_[t[0]])) {
+        side_[vertex] = height >= 0.0f ? 1.0f : -1.0f;
+    }
+    met_[vertex] = nearest;
+    constexpr float kAir = 0.001f; // m, beyond half of both thicknesses
+    const float gap = 0.5f * (mine.thickness + theirs.thickness) + kAir;
+    contacts_.push_back({vertex,
+                         {t[0], t[1], t[2]},
+                         {place[0], place[1], place[2]},
+                         side_[vertex],
+                         std::min(gap, reach_),
+                         std::max(mine.friction, theirs.friction)});
+}
+
+/// Where most of the neighbours that touch the same piece do so on its other side, go there.
+void ClothContacts::untangle() noexcept {
+    for (Contact& contact : contacts_) {
+        const Vertex& there = vertices_[contact.corner[0]];
+        int same = 0;
+        int opposite = 0;
+        for (std::uint32_t s = star_first_[contact.vertex]; s < star_first_[contact.vertex + 1];
+             ++s) {
+            for (const std::uint32_t v : triangles_[star_[s]]) {
+                if (v != contact.vertex && met_[v] != kNobody &&
+                    same_piece(vertices_[triangles_[met_[v]][0]], there)) {
+                    ++(side_[v] == contact.side ? same : opposite);
+                }
+            }
+        }
+        contact.side = opposite > 2 * same ? -contact.side : contact.side;
+    }
+    for (const Contact& contact : contacts_) {
+        side_[contact.vertex] = contact.side;
+    }
+}
+
+void ClothContacts::find(std::span<const Vec4f> x, std::uint32_t frame) noexcept {
+    constexpr std::uint32_t kTurns = 3;
+    contacts_.clear();
+    sort_into_cells(x);
+    for (std::uint32_t v = 0; v < vertices_.size(); ++v) {
+        if (vertices_[v].part == kNobody || vertices_[v].weight <= 0.0f) {
+            continue;
+        }
+        if (met_[v] == kNobody && (v + frame) % kTurns != 0) {
+            continue;
+        }
+        const std::uint32_t other = nearest_other(x, v);
+        if (other == kNobody) {
+            met_[v] = kNobody;
+            continue;
+        }
+        meet(x, v, other);
+    }
+    untangle();
+}
+
+void ClothContacts::resolve(std::span<Vec4f> x, std::span<const Vec4f> q) const noexcept {
+    for (const Contact& c : contacts_) {
+        Vec4f* const corner[3] = {&x[c.corner[0]], &x[c.corner[1]], &x[c.corner[2]]};
+        Vec4f normal = (*corner[1] - *corner[0]).cross3(*corner[2] - *corner[0]);
+        const float area = normal.norm();
+        if (area < 1e-12f) {
+            continue;
+        }
+        normal *= c.side / area;
+        const Vec4f apart = x[c.vertex] - c.share[0] * *corner[0] - c.share[1] * *corner[1] -
+                            c.share[2] * *corner[2];
+        const float push = c.gap - apart.dot(normal);
+        float weight = vertices_[c.vertex].weight;
+        for (std::size_t k = 0; k < 3; ++k) {
+            weight += c.share[k] * c.share[k] * vertices_[c.corner[k]].weight;
+        }
+        if (push <= 0.0f || weight <= 0.0f) {
+            continue;
+        }
+        // Friction takes from the sliding of one over the other in this substep.
+        Vec4f slide = apart - q[c.vertex];
+        for (std::size_t k = 0; k < 3; ++k) {
+            slide += c.share[k] * q[c.corner[k]];
+        }
+        slide -= slide.dot(normal) * normal;
+        const float length = slide.norm();
+        const float stick = length > 0.0f ? std::min(1.0f, c.friction * push / length) : 0.0f;
+        const Vec4f shift = (push * normal - stick * slide) / weight;
+        x[c.vertex] += vertices_[c.vertex].weight * shift;
+        for (std::size_t k = 0; k < 3; ++k) {
+            *corner[k] -= (c.share[k] * vertices_[c.corner[k]].weight) * shift;
+        }
+    }
+}
+
+} // namespace toile::cloth
