@@ -132,7 +132,7 @@ Visibility::Visibility(const body::TestPerson& person)
 }
 
 std::array<float, kJointCount> Visibility::shares(const std::vector<Vec3f>& positions,
-                                              const sensor::DepthCamera& camera) const {
+                                                  const sensor::DepthCamera& camera) const {
     std::array<float, kJointCount> seen{};
     const Eigen::Isometry3d from_world = camera.settings().world_from_camera.inverse();
     const auto& depth = camera.depth();
@@ -147,14 +147,12 @@ std::array<float, kJointCount> Visibility::shares(const std::vector<Vec3f>& posi
         const auto x = std::lround(pixel->x()), y = std::lround(pixel->y());
         if (x < 0 || y < 0 || x >= depth.width || y >= depth.height) continue;
         const float d = depth.metres[static_cast<std::size_t>(y * depth.width + x)];
-        if (std::abs(d + static_cast<float>(p.z())) < kSeenTolerance)
-            seen[joint_[v]] += area_[v];
+        if (std::abs(d + static_cast<float>(p.z())) < kSeenTolerance) seen[joint_[v]] += area_[v];
     }
     for (std::size_t j = 0; j < kJointCount; ++j)
         seen[j] = total_[j] > 0.0f ? seen[j] / total_[j] : 0.0f;
     return seen;
 }
-
 
 void TrackSums::add(const TrackSums& o) {
     visible += o.visible, all += o.all, visible_count += o.visible_count;
@@ -188,14 +186,16 @@ void print(const std::string& name, TrackSums& s) {
         name.c_str(), s.frames,
         s.visible / static_cast<double>(std::max<std::size_t>(1, s.visible_count)),
         s.all / static_cast<double>(std::max<std::size_t>(1, s.all_count)),
-        percent(s.called, s.frames), percent(s.near, s.visible_count), percent(s.good_frames, s.frames),
-        percent(s.failed_frames, s.frames), s.longest_swap, at(0.5), at(0.95), at(1.0));
+        percent(s.called, s.frames), percent(s.near, s.visible_count),
+        percent(s.good_frames, s.frames), percent(s.failed_frames, s.frames), s.longest_swap,
+        at(0.5), at(0.95), at(1.0));
     const auto roll = [&](std::size_t bent) {
         return s.roll[bent] / static_cast<double>(std::max<std::size_t>(1, s.roll_count[bent]));
     };
-    std::printf("    roll: bent %.1f, straight %.1f degrees; failed frames flagged %zu of %zu, false "
-                "alarms %.1f %%\n",
-                roll(1), roll(0), s.flagged, s.failed_frames, percent(s.alarms, s.good_frames));
+    std::printf(
+        "    roll: bent %.1f, straight %.1f degrees; failed frames flagged %zu of %zu, false "
+        "alarms %.1f %%\n",
+        roll(1), roll(0), s.flagged, s.failed_frames, percent(s.alarms, s.good_frames));
     std::fflush(stdout);
 }
 
@@ -207,8 +207,8 @@ bool swapped(const sensor::Simulator& simulator, const body_tracker::PersonTrack
     for (const Joint joint : kRolled) {
         const Vec3f at = place * person.joints()[static_cast<std::size_t>(joint)].translation;
         as_is += (at - truth[static_cast<std::size_t>(joint)].translation).norm();
-        exchanged += (at - truth[static_cast<std::size_t>(body::opposite_joint(joint))].translation)
-                         .norm();
+        exchanged +=
+            (at - truth[static_cast<std::size_t>(body::opposite_joint(joint))].translation).norm();
     }
     return exchanged < as_is;
 }
@@ -216,8 +216,8 @@ bool swapped(const sensor::Simulator& simulator, const body_tracker::PersonTrack
 namespace {
 
 void add_roll(const sensor::Simulator& simulator, const body::JointTransforms& truth,
-              const body_tracker::PersonTrack& person,
-              const std::array<float, kJointCount>& shares, TrackSums& sums) {
+              const body_tracker::PersonTrack& person, const std::array<float, kJointCount>& shares,
+              TrackSums& sums) {
     const Quatf place(simulator.camera(0).reported_pose().linear().cast<float>());
     for (const Joint joint : kRolled) {
         if (shares[static_cast<std::size_t>(joint)] < kVisibleShare) continue;
@@ -251,17 +251,17 @@ FrameErrors compare(const sensor::Simulator& simulator, std::size_t figure,
     const Eigen::Isometry3f place = simulator.camera(0).reported_pose().cast<float>();
     for (std::size_t j = 0; j < kJointCount; ++j) {
         const double off =
-            called ? 1000.0 * static_cast<double>((place * person.joints()[j].translation -
-                                                   truth[j].translation)
-                                                      .norm())
+            called ? 1000.0 *
+                         static_cast<double>(
+                             (place * person.joints()[j].translation - truth[j].translation).norm())
                    : 500.0;
         sums.all += off;
         ++sums.all_count;
         sums.joint[j] += off;
         ++sums.joint_count[j];
         if (called) {
-            const auto tenth = std::min<std::size_t>(
-                9, static_cast<std::size_t>(10.0f * person.confidence()[j]));
+            const auto tenth =
+                std::min<std::size_t>(9, static_cast<std::size_t>(10.0f * person.confidence()[j]));
             ++sums.stated[tenth];
             sums.kept[tenth] += off < 100.0 ? 1 : 0;
         }

@@ -36,8 +36,8 @@ struct TrackSums {
     double visible = 0, all = 0; ///< millimetres
     std::size_t visible_count = 0, all_count = 0, near = 0;
     std::size_t frames = 0, called = 0, good_frames = 0, failed_frames = 0;
-    std::size_t flagged = 0;   ///< of the failed frames, those not called tracked
-    std::size_t alarms = 0;    ///< of the good frames, those not called tracked
+    std::size_t flagged = 0; ///< of the failed frames, those not called tracked
+    std::size_t alarms = 0;  ///< of the good frames, those not called tracked
     std::array<double, body::kJointCount> joint{};
     std::array<std::size_t, body::kJointCount> joint_count{};
     std::size_t swapped = 0, longest_swap = 0; ///< frames in which left and right are exchanged

@@ -25,7 +25,7 @@ using toile::Vec3f;
 
 constexpr std::uint32_t kKnown = 70;     // frames until somebody and the shape are known
 constexpr std::uint32_t kPerEvent = 150; // frames of a motion for each induced failure
-constexpr std::uint32_t kAfter = 3;     // frames after the gap until the pose is judged
+constexpr std::uint32_t kAfter = 3;      // frames after the gap until the pose is judged
 constexpr std::uint32_t kRecovered = 10; // and until it should be right again
 constexpr std::uint32_t kRestKnown = 75, kRestFrames = 150;
 
@@ -106,9 +106,8 @@ double length_error(const tracker::PersonTrack& person, const body::JointTransfo
                                       error(Joint::left_upper_leg, Joint::left_lower_leg));
 }
 
-/// Between two frames a person takes another pose and steps aside: what the camera saw last is of no
-/// use. Judged after `kAfter` more frames. Only where the person was
-/// tracked rightly before.
+/// Between two frames a person takes another pose and steps aside: what the camera saw last is of
+/// no use. Judged after `kAfter` more frames. Only where the person was tracked rightly before.
 void induce_failures(const Bench& bench) {
     std::array<TrackSums, 2> sums;
     std::array<std::size_t, 2> failed{}, flagged{}, good{}, alarms{}, all{}, right{};
@@ -158,13 +157,15 @@ void induce_failures(const Bench& bench) {
         fs::remove(walk);
     }
     for (std::size_t r = 0; r < 2; ++r)
-        std::printf("induced failures, recovery %s: %zu gaps, %zu failed, of them flagged %zu (%.1f "
-                    "%%); good %zu, false alarms %zu (%.1f %%); ten frames after the gap %.1f %% are right, visible "
-                    "joints %.0f mm, lengths %.1f %%\n",
-                    r == 0 ? "off" : "on", all[r], failed[r], flagged[r],
-                    percent(flagged[r], failed[r]), good[r], alarms[r], percent(alarms[r], good[r]), percent(right[r], all[r]),
-                    mm[r] / static_cast<double>(std::max<std::size_t>(1, all[r])),
-                    lengths[r] / static_cast<double>(std::max<std::size_t>(1, all[r])));
+        std::printf(
+            "induced failures, recovery %s: %zu gaps, %zu failed, of them flagged %zu (%.1f "
+            "%%); good %zu, false alarms %zu (%.1f %%); ten frames after the gap %.1f %% are "
+            "right, visible "
+            "joints %.0f mm, lengths %.1f %%\n",
+            r == 0 ? "off" : "on", all[r], failed[r], flagged[r], percent(flagged[r], failed[r]),
+            good[r], alarms[r], percent(alarms[r], good[r]), percent(right[r], all[r]),
+            mm[r] / static_cast<double>(std::max<std::size_t>(1, all[r])),
+            lengths[r] / static_cast<double>(std::max<std::size_t>(1, all[r])));
 }
 
 /// How far joints of people who stand still move about: the deviation from their own mean.
@@ -189,8 +190,7 @@ void stand_at_rest(const Bench& bench) {
                              static_cast<std::int64_t>(1e9 * f / kTrackRate));
             if (f < kRestKnown) continue;
             for (std::size_t j = 0; j < kJointCount; ++j) {
-                const Vec3d at =
-                    tracking->people()[0]->joints()[j].translation.cast<double>();
+                const Vec3d at = tracking->people()[0]->joints()[j].translation.cast<double>();
                 mean[j] += at / kRestFrames;
                 squares[j] += at.squaredNorm() / kRestFrames;
             }
@@ -241,15 +241,16 @@ void stand_together(const Bench& bench) {
         if (!person->active() || person->following() == tracker::Following::lost) continue;
         float nearest = 1e9f;
         for (const auto& one : truth)
-            nearest = std::min(nearest, (place * person->joints()[0].translation -
-                                         one.joints[0].translation)
-                                            .norm());
+            nearest = std::min(
+                nearest,
+                (place * person->joints()[0].translation - one.joints[0].translation).norm());
         followed += nearest < 0.2f ? 1 : 0;
         far = std::max(far, 1e3 * static_cast<double>(nearest));
     }
-    std::printf("six people standing: %zu followed, hips at most %.0f mm off, %.1f ms a frame, %.1f "
-                "a person\n",
-                followed, far, ms[ms.size() / 2], ms[ms.size() / 2] / 6.0);
+    std::printf(
+        "six people standing: %zu followed, hips at most %.0f mm off, %.1f ms a frame, %.1f "
+        "a person\n",
+        followed, far, ms[ms.size() / 2], ms[ms.size() / 2] / 6.0);
     for (const fs::path& file : standing)
         fs::remove(file);
 }
