@@ -161,7 +161,11 @@ void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex,
     const ClothPart& mine = parts_[vertices_[vertex].part];
     const ClothPart& theirs = parts_[vertices_[t[0]].part];
     const Vec4f normal = (x[t[1]] - x[t[0]]).cross3(x[t[2]] - x[t[0]]);
-    const float height = (p - x[t[0]]).dot(normal);
+    const float height = (p - x[t[0]]).dot(normal) / std::max(normal.norm(), 1e-12f);
+    constexpr float kSlant = 0.5f;
+    if (std::abs(height) < kSlant * std::sqrt(least) && met_[vertex] == kNobody) {
+        return; // beside the end of a sheet: on neither side of it
+    }
     if (mine.layer != theirs.layer) {
         side_[vertex] = mine.layer > theirs.layer ? 1.0f : -1.0f;
     } else if (met_[vertex] == kNobody ||
@@ -194,7 +198,8 @@ void ClothContacts::untangle() noexcept {
                 }
             }
         }
-        contact.side = opposite > 2 * same ? -contact.side : contact.side;
+        constexpr int kFew = 3; // a neighbour counts in each of two triangles
+        contact.side = opposite > 2 * same + kFew ? -contact.side : contact.side;
     }
     for (const Contact& contact : contacts_) {
         side_[contact.vertex] = contact.side;
