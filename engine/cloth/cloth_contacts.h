@@ -1,5 +1,5 @@
-// Cloth against cloth, within a garment and between garments: each vertex and the nearest triangle of
-// another sheet, or of a part of its own that is far away along the cloth.
+// Cloth against cloth, within a garment and between garments: each vertex and the nearest triangle
+// of another sheet, or of a part of its own that is far away along the cloth.
 #pragma once
 
 #include "core/types.h"
@@ -51,7 +51,7 @@ class ClothContacts {
     };
     struct Contact {
         std::uint32_t vertex, corner[3];
-        float share[3];             ///< barycentric
+        float share[3];            ///< barycentric
         float side, gap, friction; ///< +1 over the triangle, -1 beneath; m; Coulomb
     };
 

@@ -34,8 +34,8 @@ inline Crossing cross(const Vec4& from, const Vec4& up, const Triangle& corner,
 
 } // namespace
 
-void SkinCover::find(const MovingBody& body, const BodyContacts& contacts,
-                     std::span<const Vec4> x, float close) noexcept {
+void SkinCover::find(const MovingBody& body, const BodyContacts& contacts, std::span<const Vec4> x,
+                     float close) noexcept {
     pairs_.clear();
     const std::span<const Triangle> triangles = contacts.triangles();
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {

@@ -98,7 +98,7 @@ class GarmentCloth {
     cloth::SkinCover cover_;
     Rows rows_;
     std::vector<Vec4> target_before_, target_after_;
-    float period_ = 0.0f; ///< s, of the frame at hand
+    float period_ = 0.0f;       ///< s, of the frame at hand
     float since_damped_ = 0.0f; ///< s
     bool bends_ = true;         ///< in the next substep; every second does
 };

@@ -1,5 +1,5 @@
-// Contact against closed forms, for every plugin of cloth: nothing inside, friction, a fast arm, recovery,
-// rest. Included after a plugin's scenes.h, which names the plugin.
+// Contact against closed forms, for every plugin of cloth: nothing inside, friction, a fast arm,
+// recovery, rest. Included after a plugin's scenes.h, which names the plugin.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -149,7 +149,7 @@ struct ClothStage {
     bool begun = false;
 
     ClothStage(Mesh on, Mesh garment, const Settings& s = {}, const Fabric& f = {},
-          std::vector<float> held = {})
+               std::vector<float> held = {})
         : body(std::move(on)), cloth(std::move(garment)), attachment(std::move(held)), fabric(f),
           settings(s), world(s), body_now(body.positions), targets(cloth.positions),
           positions(cloth.positions), normals(cloth.positions) {

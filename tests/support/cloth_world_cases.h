@@ -1,5 +1,5 @@
-// A world of cloth as its callers may treat it, for every plugin of it: same bytes, garments in and out,
-// hostile input. Included after a plugin's scenes.h, which names the plugin.
+// A world of cloth as its callers may treat it, for every plugin of it: same bytes, garments in and
+// out, hostile input. Included after a plugin's scenes.h, which names the plugin.
 #pragma once
 
 #include "core/error.h"

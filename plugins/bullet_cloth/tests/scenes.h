@@ -3,8 +3,8 @@
 
 #define TOILE_CLOTH_PLUGIN bullet_cloth
 
-#include "support/cloth_stage.h"
 #include "bullet_cloth/cloth_world.h"
+#include "support/cloth_stage.h"
 
 namespace toile::bullet_cloth::test {
 

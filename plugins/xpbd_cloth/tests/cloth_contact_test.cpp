@@ -1,4 +1,5 @@
-// Cloth against cloth: what falls on a held sheet stays on it, layers keep their order, tangles mend.
+// Cloth against cloth: what falls on a held sheet stays on it, layers keep their order, tangles
+// mend.
 #include "scenes.h"
 
 #include <gtest/gtest.h>
