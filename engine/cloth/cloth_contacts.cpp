@@ -136,10 +136,10 @@ std::uint32_t ClothContacts::nearest_other(std::span<const Vec4f> x,
 }
 
 /// Lists the contact of a vertex with the nearest triangle at another one.
-void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex,
-                         std::uint32_t other) noexcept {
+void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other,
+                         float reach) noexcept {
     const Vec4f& p = x[vertex];
-    float least = reach_ * reach_;
+    float least = reach * reach;
     std::uint32_t nearest = kNobody;
     std::array<float, 3> place{};
     for (std::uint32_t s = star_first_[other]; s < star_first_[other + 1]; ++s) {
@@ -161,7 +161,11 @@ void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex,
     const ClothPart& mine = parts_[vertices_[vertex].part];
     const ClothPart& theirs = parts_[vertices_[t[0]].part];
     const Vec4f normal = (x[t[1]] - x[t[0]]).cross3(x[t[2]] - x[t[0]]);
-    const float height = (p - x[t[0]]).dot(normal);
+    const float height = (p - x[t[0]]).dot(normal) / std::max(normal.norm(), 1e-12f);
+    constexpr float kSlant = 0.5f;
+    if (std::abs(height) < kSlant * std::sqrt(least) && met_[vertex] == kNobody) {
+        return; // beside the end of a sheet: on neither side of it
+    }
     if (mine.layer != theirs.layer) {
         side_[vertex] = mine.layer > theirs.layer ? 1.0f : -1.0f;
     } else if (met_[vertex] == kNobody ||
@@ -194,30 +198,34 @@ void ClothContacts::untangle() noexcept {
                 }
             }
         }
-        contact.side = opposite > 2 * same ? -contact.side : contact.side;
+        constexpr int kFew = 3; // a neighbour counts in each of two triangles
+        contact.side = opposite > 2 * same + kFew ? -contact.side : contact.side;
     }
     for (const Contact& contact : contacts_) {
         side_[contact.vertex] = contact.side;
     }
 }
 
-void ClothContacts::find(std::span<const Vec4f> x, std::uint32_t frame) noexcept {
+void ClothContacts::find(std::span<const Vec4f> x, std::span<const Vec4f> v, float seconds,
+                         std::uint32_t frame) noexcept {
     constexpr std::uint32_t kTurns = 3;
     contacts_.clear();
     sort_into_cells(x);
-    for (std::uint32_t v = 0; v < vertices_.size(); ++v) {
-        if (vertices_[v].part == kNobody || vertices_[v].weight <= 0.0f) {
+    for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
+        if (vertices_[i].part == kNobody || vertices_[i].weight <= 0.0f) {
             continue;
         }
-        if (met_[v] == kNobody && (v + frame) % kTurns != 0) {
+        const float way = v[i].norm() * seconds;
+        const bool slow = kTurns * way < 0.5f * reach_;
+        if (met_[i] == kNobody && slow && (i + frame) % kTurns != 0) {
             continue;
         }
-        const std::uint32_t other = nearest_other(x, v);
+        const std::uint32_t other = nearest_other(x, i);
         if (other == kNobody) {
-            met_[v] = kNobody;
+            met_[i] = kNobody;
             continue;
         }
-        meet(x, v, other);
+        meet(x, i, other, std::min(reach_ + way, radius_));
     }
     untangle();
 }

@@ -32,8 +32,10 @@ class ClothContacts {
     /// Forgets who is near whom.
     void reset() noexcept;
 
-    /// Finds who is near; `frame` counts steps: a vertex that is near nobody looks on every third.
-    void find(std::span<const Vec4f> x, std::uint32_t frame) noexcept;
+    /// Finds who is near or, at velocity v, will be within `seconds`; (rows) each. `frame` counts
+    /// calls: a slow vertex that is near nobody looks on every third.
+    void find(std::span<const Vec4f> x, std::span<const Vec4f> v, float seconds,
+              std::uint32_t frame) noexcept;
     /// Keeps them apart, with friction against the motion since q; (rows) each.
     void resolve(std::span<Vec4f> x, std::span<const Vec4f> q) const noexcept;
 
@@ -57,7 +59,8 @@ class ClothContacts {
     [[nodiscard]] std::uint32_t cell_of(int cx, int cy, int cz) const noexcept;
     [[nodiscard]] std::uint32_t nearest_other(std::span<const Vec4f> x,
                                               std::uint32_t vertex) const noexcept;
-    void meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other) noexcept;
+    void meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other,
+              float reach) noexcept;
     void untangle() noexcept;
     [[nodiscard]] bool same_piece(const Vertex& a, const Vertex& b) const noexcept {
         return a.part == b.part && (a.start - b.start).squaredNorm() < a.apart * a.apart;

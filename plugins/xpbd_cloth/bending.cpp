@@ -103,7 +103,7 @@ Bending::Bending(const ClothMesh& mesh, const Fabric& fabric, std::span<const fl
         Hinge hinge{{p.a, p.b, p.opposite, q.opposite},
                     {p.cot_b + q.cot_b, p.cot_a + q.cot_a, -p.cot_a - p.cot_b, -q.cot_a - q.cot_b},
                     {}};
-        Softness soft{{}, (p.area + q.area) / (3.0f * rigidity)};
+        Softness soft{{}, (p.area + q.area) / rigidity};
         for (std::size_t k = 0; k < 4; ++k) {
             soft.mass[k] = inverse_mass[hinge.vertex[k]];
         }

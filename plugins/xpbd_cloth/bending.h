@@ -6,10 +6,13 @@
 
 namespace toile::xpbd_cloth {
 
-/// A flat material folded about an edge stores 3 l^2 B / (2 (A1 + A2)) theta^2. For cloth, which
-/// keeps its lengths, that is quadratic in the positions (Bergou et al. 2006, isometric bending):
-///     C = sum_i k_i x_i  (a vector, of length l theta for small angles),  compliance (A1 + A2) /
-///     (3 B).
+/// A flat sheet of rigidity B folded by theta about an edge of length l between triangles of areas
+/// A1 and A2 stores B l^2 / (2 (A1 + A2)) theta^2: then it bends as the continuum does (Seung and
+/// Nelson 1988; the factor 3 of the mean-curvature energy of Bergou et al. 2006 belongs to folds
+/// along all three edges of a triangle and is three times too stiff for a cylinder). For cloth,
+/// which keeps its lengths, that is quadratic in the positions, with the cotangent weights of
+/// Bergou's paper:
+///     C = sum_i k_i x_i  (a vector, of length l theta for small angles), compliance (A1 + A2) / B.
 /// Its gradient does not change, so a hinge costs four rows, one dot product and no root.
 class Bending {
   public:

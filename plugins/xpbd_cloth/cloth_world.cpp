@@ -173,7 +173,7 @@ float ClothWorld::simulate(double dt_s, std::uint32_t substeps) noexcept {
             entry.cloth.find_contacts(*body_, interval);
         }
         if (settings_.self_contact > 0.0) {
-            cloth_contacts_.find(x_, frame_);
+            cloth_contacts_.find(x_, v_, interval.length(), frame_);
         }
         for (std::uint32_t s = 1; s <= interval.substeps; ++s) {
             const float fraction = share * static_cast<float>(done + s);

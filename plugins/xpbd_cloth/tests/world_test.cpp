@@ -1,0 +1,3 @@
+#include "scenes.h"
+
+#include "support/cloth_world_cases.h"
