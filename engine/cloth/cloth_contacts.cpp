@@ -230,7 +230,7 @@ void ClothContacts::find(std::span<const Vec4f> x, std::span<const Vec4f> v, flo
     untangle();
 }
 
-void ClothContacts::resolve(std::span<Vec4f> x, std::span<const Vec4f> q) const noexcept {
+void ClothContacts::resolve(std::span<Vec4f> x, std::span<Vec4f> q) const noexcept {
     for (const Contact& c : contacts_) {
         Vec4f* const corner[3] = {&x[c.corner[0]], &x[c.corner[1]], &x[c.corner[2]]};
         Vec4f normal = (*corner[1] - *corner[0]).cross3(*corner[2] - *corner[0]);
@@ -246,7 +246,7 @@ void ClothContacts::resolve(std::span<Vec4f> x, std::span<const Vec4f> q) const 
         for (std::size_t k = 0; k < 3; ++k) {
             weight += c.share[k] * c.share[k] * vertices_[c.corner[k]].weight;
         }
-        if (push <= 0.0f || weight <= 0.0f) {
+        if (push <= 0.0f || push > c.gap + reach_ || weight <= 0.0f) {
             continue;
         }
         // Friction takes from the sliding of one over the other in this substep.
@@ -254,12 +254,16 @@ void ClothContacts::resolve(std::span<Vec4f> x, std::span<const Vec4f> q) const 
         for (std::size_t k = 0; k < 3; ++k) {
             slide += c.share[k] * q[c.corner[k]];
         }
+        const float parting = slide.dot(normal) + push;
         slide -= slide.dot(normal) * normal;
         const float length = slide.norm();
         const float stick = length > 0.0f ? std::min(1.0f, c.friction * push / length) : 0.0f;
         const Vec4f shift = (push * normal - stick * slide) / weight;
+        const Vec4f still = (std::clamp(parting, 0.0f, push) / weight) * normal;
         x[c.vertex] += vertices_[c.vertex].weight * shift;
+        q[c.vertex] += vertices_[c.vertex].weight * still;
         for (std::size_t k = 0; k < 3; ++k) {
+            q[c.corner[k]] -= (c.share[k] * vertices_[c.corner[k]].weight) * still;
             *corner[k] -= (c.share[k] * vertices_[c.corner[k]].weight) * shift;
         }
     }
