@@ -28,6 +28,7 @@ std::array<float, 3> place_over(const Vec4f& p, const Vec4f& a, const Vec4f& b, 
 
 void ClothContacts::arrange(std::span<const ClothPart> parts, std::size_t rows) {
     constexpr float kSamePiece = 4.0f; // edges
+    constexpr float kSameFold = 0.04f; // m, nearer along the cloth is a fold: bending's matter
     parts_.assign(parts.begin(), parts.end());
     vertices_.assign(rows, {});
     triangles_.clear();
@@ -37,7 +38,7 @@ void ClothContacts::arrange(std::span<const ClothPart> parts, std::size_t rows) 
         longest_edge = std::max(longest_edge, part.mean_edge);
         for (std::size_t v = 0; v < part.start.size(); ++v) {
             vertices_[part.first + v] = {part.start[v], part.inverse_mass[v],
-                                         kSamePiece * part.mean_edge, k};
+                                         std::max(kSamePiece * part.mean_edge, kSameFold), k};
         }
         const auto base = static_cast<std::uint32_t>(part.first);
         for (const Triangle& t : part.triangles) {

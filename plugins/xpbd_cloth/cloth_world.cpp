@@ -84,7 +84,7 @@ void ClothWorld::arrange() {
     q_.swap(q);
     v_.swap(v);
     std::vector<cloth::ClothPart> parts;
-    for (Entry& entry : garments_) {
+    for (const Entry& entry : garments_) {
         const GarmentCloth& cloth = entry.cloth;
         parts.push_back({entry.first, cloth.start(), cloth.triangles(), cloth.inverse_mass(),
                          cloth.layer(), cloth.mean_edge(), cloth.thickness(), cloth.friction()});
