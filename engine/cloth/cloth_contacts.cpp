@@ -28,6 +28,7 @@ std::array<float, 3> place_over(const Vec4f& p, const Vec4f& a, const Vec4f& b, 
 
 void ClothContacts::arrange(std::span<const ClothPart> parts, std::size_t rows) {
     constexpr float kSamePiece = 4.0f; // edges
+    constexpr float kSameFold = 0.04f; // m, nearer along the cloth is a fold: bending's matter
     parts_.assign(parts.begin(), parts.end());
     vertices_.assign(rows, {});
     triangles_.clear();
@@ -37,7 +38,7 @@ void ClothContacts::arrange(std::span<const ClothPart> parts, std::size_t rows) 
         longest_edge = std::max(longest_edge, part.mean_edge);
         for (std::size_t v = 0; v < part.start.size(); ++v) {
             vertices_[part.first + v] = {part.start[v], part.inverse_mass[v],
-                                         kSamePiece * part.mean_edge, k};
+                                         std::max(kSamePiece * part.mean_edge, kSameFold), k};
         }
         const auto base = static_cast<std::uint32_t>(part.first);
         for (const Triangle& t : part.triangles) {
@@ -230,7 +231,7 @@ void ClothContacts::find(std::span<const Vec4f> x, std::span<const Vec4f> v, flo
     untangle();
 }
 
-void ClothContacts::resolve(std::span<Vec4f> x, std::span<const Vec4f> q) const noexcept {
+void ClothContacts::resolve(std::span<Vec4f> x, std::span<Vec4f> q) const noexcept {
     for (const Contact& c : contacts_) {
         Vec4f* const corner[3] = {&x[c.corner[0]], &x[c.corner[1]], &x[c.corner[2]]};
         Vec4f normal = (*corner[1] - *corner[0]).cross3(*corner[2] - *corner[0]);
@@ -246,7 +247,7 @@ void ClothContacts::resolve(std::span<Vec4f> x, std::span<const Vec4f> q) const 
         for (std::size_t k = 0; k < 3; ++k) {
             weight += c.share[k] * c.share[k] * vertices_[c.corner[k]].weight;
         }
-        if (push <= 0.0f || weight <= 0.0f) {
+        if (push <= 0.0f || push > c.gap + reach_ || weight <= 0.0f) {
             continue;
         }
         // Friction takes from the sliding of one over the other in this substep.
@@ -254,12 +255,16 @@ void ClothContacts::resolve(std::span<Vec4f> x, std::span<const Vec4f> q) const 
         for (std::size_t k = 0; k < 3; ++k) {
             slide += c.share[k] * q[c.corner[k]];
         }
+        const float parting = slide.dot(normal) + push;
         slide -= slide.dot(normal) * normal;
         const float length = slide.norm();
         const float stick = length > 0.0f ? std::min(1.0f, c.friction * push / length) : 0.0f;
         const Vec4f shift = (push * normal - stick * slide) / weight;
+        const Vec4f still = (std::clamp(parting, 0.0f, push) / weight) * normal;
         x[c.vertex] += vertices_[c.vertex].weight * shift;
+        q[c.vertex] += vertices_[c.vertex].weight * still;
         for (std::size_t k = 0; k < 3; ++k) {
+            q[c.corner[k]] -= (c.share[k] * vertices_[c.corner[k]].weight) * still;
             *corner[k] -= (c.share[k] * vertices_[c.corner[k]].weight) * shift;
         }
     }

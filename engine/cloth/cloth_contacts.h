@@ -36,8 +36,9 @@ class ClothContacts {
     /// calls: a slow vertex that is near nobody looks on every third.
     void find(std::span<const Vec4f> x, std::span<const Vec4f> v, float seconds,
               std::uint32_t frame) noexcept;
-    /// Keeps them apart, with friction against the motion since q; (rows) each.
-    void resolve(std::span<Vec4f> x, std::span<const Vec4f> q) const noexcept;
+    /// Keeps them apart, with friction against the motion since q; (rows) each. What parts them is
+    /// no reason to fly off: it is taken from q too. Who is deeper than the reach is let pass.
+    void resolve(std::span<Vec4f> x, std::span<Vec4f> q) const noexcept;
 
     [[nodiscard]] std::size_t contact_count() const noexcept { return contacts_.size(); }
 
