@@ -2,8 +2,9 @@
 // the forest of body parts.
 #include "body/avatar_files.h"
 #include "body_tracker/body_tracking.h"
+#include "body_tracker/other_body.h"
 #include "body_tracker/parts_tool.h"
-#include "body_tracker/tracked_shape.h"
+#include "boundary/shaped_body.h"
 #include "core/error.h"
 #include "sdk/body_source.h"
 #include "sdk/parameters.h"
@@ -121,7 +122,7 @@ class BodyTracker {
   private:
     /// What was last told of one person's shape.
     struct Told {
-        std::unique_ptr<tracker::TrackedShape> shape;
+        std::unique_ptr<toile::boundary::ShapedBody> shape;
         std::uint32_t version = 0, person = 0;
     };
 
@@ -196,8 +197,11 @@ class BodyTracker {
 
     void tell_shape(const tracker::PersonTrack& track, Told& told, toile_person& out) {
         if (told.shape == nullptr || told.version != track.shape_version()) {
-            told.shape =
-                std::make_unique<tracker::TrackedShape>(*model_, track.body().shape(), ++revision_);
+            const body::ShapeVector& wanted = track.body().shape();
+            told.shape = std::make_unique<toile::boundary::ShapedBody>(
+                model_->space().model(), body::rest_shape(*model_, {wanted, {}}),
+                std::span(wanted.data(), static_cast<std::size_t>(wanted.size())),
+                body::Measurements{}, ++revision_);
             told.version = track.shape_version();
         }
         out.has_new_body = 1;

@@ -17,23 +17,7 @@ std::uint32_t rounds(double dt_s, double rate) {
 
 void ClothWorld::set_body(const BodyRest& rest) {
     MovingBody body(rest);
-    std::vector<Entry> bound = std::move(garments_);
-    garments_.clear();
-    try {
-        for (Entry& entry : bound) {
-            entry.cloth.bind(body);
-            entry.fresh = true;
-        }
-    } catch (...) {
-        if (rest_body_) {
-            for (Entry& entry : bound) {
-                entry.cloth.bind(*rest_body_);
-            }
-        }
-        garments_ = std::move(bound);
-        throw;
-    }
-    garments_ = std::move(bound);
+    garments_.bind(body, rest_body_ ? &*rest_body_ : nullptr);
     rest_body_ = body;
     body_ = std::move(body);
 }
@@ -42,48 +26,16 @@ std::uint32_t ClothWorld::add_garment(const GarmentInput& input) {
     if (!rest_body_) {
         throw Error("add_garment: no body; call set_body first");
     }
-    garments_.push_back({next_handle_, true, GarmentCloth(input, *rest_body_, settings_)});
-    note_garments();
-    return next_handle_++;
+    return garments_.add(GarmentCloth(input, *rest_body_, settings_));
 }
 
 void ClothWorld::remove_garment(std::uint32_t garment) {
-    const auto it = std::find_if(garments_.begin(), garments_.end(),
-                                 [&](const Entry& entry) { return entry.handle == garment; });
-    if (it == garments_.end()) {
-        throw Error("remove_garment: there is no garment " + std::to_string(garment));
-    }
-    garments_.erase(it);
-    note_garments();
-}
-
-const GarmentCloth& ClothWorld::garment(std::uint32_t handle) const {
-    for (const Entry& entry : garments_) {
-        if (entry.handle == handle) {
-            return entry.cloth;
-        }
-    }
-    throw Error("there is no garment " + std::to_string(handle));
-}
-
-void ClothWorld::note_garments() {
-    known_.clear();
-    for (const Entry& entry : garments_) {
-        known_.push_back({entry.handle, entry.cloth.vertex_count()});
-    }
-}
-
-ClothWorld::Entry* ClothWorld::find(std::uint32_t handle) noexcept {
-    for (Entry& entry : garments_) {
-        if (entry.handle == handle) {
-            return &entry;
-        }
-    }
-    return nullptr;
+    garments_.remove(garment);
 }
 
 StepResult ClothWorld::step(const StepInput& input) noexcept {
-    StepResult result = cloth::check_step(input, body_ ? body_->vertex_count() : 0, known_);
+    StepResult result =
+        cloth::check_step(input, body_ ? body_->vertex_count() : 0, garments_.known());
     if (result != StepResult::ok) {
         return result;
     }
@@ -91,7 +43,7 @@ StepResult ClothWorld::step(const StepInput& input) noexcept {
     const auto substep = static_cast<float>(input.dt_s / count);
     body_->set_motion(input.body_before, input.body_after, static_cast<float>(input.dt_s));
     for (const GarmentFrame& frame : input.garments) {
-        Entry& entry = *find(frame.garment);
+        Entry& entry = *garments_.find(frame.garment);
         entry.cloth.begin_step(frame.targets, substep);
         if (input.reset || entry.fresh) {
             entry.cloth.reset();
@@ -101,7 +53,7 @@ StepResult ClothWorld::step(const StepInput& input) noexcept {
     const float since_last = substep > 0.0f ? simulate(input.dt_s) : 0.0f;
     body_->place(1.0f);
     for (const GarmentFrame& frame : input.garments) {
-        Entry& entry = *find(frame.garment);
+        Entry& entry = *garments_.find(frame.garment);
         if (!entry.cloth.finite()) {
             entry.cloth.reset();
             result = StepResult::recovered;

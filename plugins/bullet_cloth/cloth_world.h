@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bullet_cloth/garment_cloth.h"
+#include "cloth/garment_roster.h"
 #include "cloth/step.h"
 
 #include <memory>
@@ -11,7 +12,6 @@ namespace toile::bullet_cloth {
 
 using cloth::BodyRest;
 using cloth::GarmentFrame;
-using cloth::KnownGarment;
 using cloth::step_result_text;
 using cloth::StepInput;
 using cloth::StepResult;
@@ -32,26 +32,19 @@ class ClothWorld {
 
     [[nodiscard]] std::size_t garment_count() const noexcept { return garments_.size(); }
     /// \throw Error when there is no such garment
-    [[nodiscard]] const GarmentCloth& garment(std::uint32_t handle) const;
+    [[nodiscard]] const GarmentCloth& garment(std::uint32_t handle) const {
+        return garments_.at(handle);
+    }
     void set_settings(const Settings& settings) { settings_ = settings; }
 
   private:
-    struct Entry {
-        std::uint32_t handle;
-        bool fresh = true; ///< begins from its targets at the next step
-        GarmentCloth cloth;
-    };
-
-    [[nodiscard]] Entry* find(std::uint32_t handle) noexcept;
+    using Entry = cloth::GarmentRoster<GarmentCloth>::Entry;
     float simulate(double dt_s) noexcept;
-    void note_garments();
 
     Settings settings_;
     std::optional<MovingBody> rest_body_; ///< stays as it was given
     std::optional<MovingBody> body_;
-    std::vector<Entry> garments_;
-    std::vector<KnownGarment> known_; ///< the same, as the check of a step reads them
-    std::uint32_t next_handle_ = 1;
+    cloth::GarmentRoster<GarmentCloth> garments_;
 };
 
 } // namespace toile::bullet_cloth

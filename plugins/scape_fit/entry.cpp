@@ -1,5 +1,6 @@
 // Kind toile.body_source/1, fed with a scan or with frames of cameras, and toile.body_fit/1.
 #include "body/body_model.h"
+#include "boundary/shaped_body.h"
 #include "core/error.h"
 #include "scape_fit/fit_session.h"
 #include "sdk/body_fit.h"
@@ -20,12 +21,6 @@ using toile::Vec3f;
 constexpr const char* kModel = "adult";
 using Rgba = std::array<std::uint8_t, 4>;
 
-template <class T>
-toile_view view_of(const std::vector<T>& rows, std::uint32_t format) {
-    return {rows.data(), static_cast<std::uint32_t>(rows.size()),
-            static_cast<std::uint32_t>(sizeof(T)), format, 0};
-}
-
 std::vector<Vec3f> vectors(const toile_view& view, const char* name) {
     std::vector<Vec3f> out;
     for (const auto& row : sdk::span_of<sdk::Float3>(view, name))
@@ -36,51 +31,6 @@ std::vector<Vec3f> vectors(const toile_view& view, const char* name) {
 void check(toile_status status) {
     if (status < 0) throw sdk::Failure(status, "the mesh sink refused the surface");
 }
-
-/// The fitted body as the boundary wants it; owns what the struct points to.
-struct BoundaryPerson {
-    explicit BoundaryPerson(const fit::FitSession& session, std::uint64_t revision) {
-        const body::BodyModel& model = session.model().space().model();
-        const auto& shape = session.result().state.shape.coefficients;
-        coefficients.assign(shape.data(), shape.data() + shape.size());
-        rest = session.rest().positions;
-        normals.resize(rest.size());
-        toile::geometry::vertex_normals(rest, model.rest.triangles, normals);
-        joints.assign(session.rest().skeleton.rest_positions.begin(),
-                      session.rest().skeleton.rest_positions.end());
-        for (const auto part : model.parts)
-            parts.push_back(static_cast<std::uint8_t>(part));
-        for (const auto& [name, vertex] : model.landmarks)
-            landmarks.push_back({name.c_str(), vertex, 0});
-        for (const body::Measurement& m : session.measurements())
-            measurements.push_back(
-                {m.name.data(), static_cast<float>(m.value_m), static_cast<float>(m.confidence)});
-        out.size = sizeof(out);
-        out.revision = revision;
-        out.model_id = model.id.c_str();
-        out.coefficients = view_of(coefficients, TOILE_F32);
-        out.rest.size = sizeof(out.rest);
-        out.rest.positions = view_of(rest, TOILE_F32X3);
-        out.rest.normals = view_of(normals, TOILE_F32X3);
-        out.rest.triangles = view_of(model.rest.triangles, TOILE_U32X3);
-        out.rest.topology_id = 1;
-        out.rest_joints = view_of(joints, TOILE_F32X3);
-        out.joint_indices = view_of(model.skin.joints, TOILE_U16X4);
-        out.joint_weights = view_of(model.skin.weights, TOILE_F32X4);
-        out.part_labels = view_of(parts, TOILE_U8);
-        out.landmarks = view_of(landmarks, TOILE_STRUCT);
-        out.measurements = view_of(measurements, TOILE_STRUCT);
-    }
-    BoundaryPerson(const BoundaryPerson&) = delete;
-    BoundaryPerson& operator=(const BoundaryPerson&) = delete;
-
-    toile_body out{};
-    std::vector<float> coefficients;
-    std::vector<Vec3f> rest, normals, joints;
-    std::vector<std::uint8_t> parts;
-    std::vector<toile_landmark> landmarks;
-    std::vector<toile_measurement> measurements;
-};
 
 class ScapeFit {
   public:
@@ -147,7 +97,11 @@ class ScapeFit {
         } catch (const toile::Error& e) {
             throw sdk::Failure(TOILE_E_NUMERIC, e.what());
         }
-        person_ = std::make_unique<BoundaryPerson>(session, ++revision_);
+        const auto& shape = session.result().state.shape.coefficients;
+        person_ = std::make_unique<toile::boundary::ShapedBody>(
+            session.model().space().model(), session.rest(),
+            std::span(shape.data(), static_cast<std::size_t>(shape.size())), session.measurements(),
+            ++revision_);
     }
 
     std::uint32_t result(const sdk::SizedArray<toile_person>& people) {
@@ -156,12 +110,12 @@ class ScapeFit {
         const std::size_t last = session_->instant_count() - 1;
         const fit::PosedLevel posed = session_->surface(last);
         person.has_new_body = 1;
-        person.body = &person_->out;
+        person.body = &person_->abi();
         person.state.person_id = 1;
         person.state.tracking = TOILE_TRACKING_TRACKED;
         person.state.sequence = sequence_;
         person.state.timestamp_ns = timestamp_ns_;
-        person.state.body_revision = person_->out.revision;
+        person.state.body_revision = person_->abi().revision;
         const auto joints =
             sdk::span_of<toile_joint>(person.joints, "people.joints", TOILE_JOINT_COUNT);
         for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -281,7 +235,7 @@ class ScapeFit {
     sdk::ThreadPool pool_;
     std::unique_ptr<fit::FitModel> model_;
     std::unique_ptr<fit::FitSession> session_;
-    std::unique_ptr<BoundaryPerson> person_;
+    std::unique_ptr<toile::boundary::ShapedBody> person_;
     std::uint64_t revision_ = 0;
     std::uint32_t sequence_ = 0;
     std::int64_t timestamp_ns_ = 0;

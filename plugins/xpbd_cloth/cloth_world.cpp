@@ -20,19 +20,7 @@ std::uint32_t rounds(double dt_s, double rate) {
 
 void ClothWorld::set_body(const BodyRest& rest) {
     MovingBody body(rest);
-    try {
-        for (Entry& entry : garments_) {
-            entry.cloth.bind(body);
-        }
-    } catch (...) {
-        for (Entry& entry : garments_) {
-            entry.cloth.bind(*rest_body_);
-        }
-        throw;
-    }
-    for (Entry& entry : garments_) {
-        entry.fresh = true;
-    }
+    garments_.bind(body, rest_body_ ? &*rest_body_ : nullptr);
     rest_body_ = body;
     body_ = std::move(body);
 }
@@ -41,18 +29,13 @@ std::uint32_t ClothWorld::add_garment(const GarmentInput& input) {
     if (!rest_body_) {
         throw Error("add_garment: no body; call set_body first");
     }
-    garments_.push_back({next_handle_, true, 0, GarmentCloth(input, *rest_body_, settings_)});
+    const std::uint32_t handle = garments_.add(GarmentCloth(input, *rest_body_, settings_));
     arrange();
-    return next_handle_++;
+    return handle;
 }
 
 void ClothWorld::remove_garment(std::uint32_t garment) {
-    const auto it = std::find_if(garments_.begin(), garments_.end(),
-                                 [&](const Entry& entry) { return entry.handle == garment; });
-    if (it == garments_.end()) {
-        throw Error("remove_garment: there is no garment " + std::to_string(garment));
-    }
-    garments_.erase(it);
+    garments_.remove(garment);
     arrange();
 }
 
@@ -65,7 +48,6 @@ void ClothWorld::arrange() {
     std::vector<Vec4> q(total, Vec4::Zero());
     std::vector<Vec4> v(total, Vec4::Zero());
     std::size_t first = 0;
-    known_.clear();
     for (Entry& entry : garments_) {
         const std::size_t rows = entry.cloth.vertex_count() + 1;
         if (!entry.fresh) {
@@ -78,7 +60,6 @@ void ClothWorld::arrange() {
         }
         entry.first = first;
         first += rows;
-        known_.push_back({entry.handle, entry.cloth.vertex_count()});
     }
     x_.swap(x);
     q_.swap(q);
@@ -98,24 +79,6 @@ void ClothWorld::arrange() {
     }
 }
 
-const GarmentCloth& ClothWorld::garment(std::uint32_t handle) const {
-    for (const Entry& entry : garments_) {
-        if (entry.handle == handle) {
-            return entry.cloth;
-        }
-    }
-    throw Error("there is no garment " + std::to_string(handle));
-}
-
-ClothWorld::Entry* ClothWorld::find(std::uint32_t handle) noexcept {
-    for (Entry& entry : garments_) {
-        if (entry.handle == handle) {
-            return &entry;
-        }
-    }
-    return nullptr;
-}
-
 std::uint32_t ClothWorld::substeps_of(double dt_s) const noexcept {
     double rate = 1.0;
     for (const Entry& entry : garments_) {
@@ -125,7 +88,8 @@ std::uint32_t ClothWorld::substeps_of(double dt_s) const noexcept {
 }
 
 StepResult ClothWorld::step(const StepInput& input) noexcept {
-    StepResult result = cloth::check_step(input, body_ ? body_->vertex_count() : 0, known_);
+    StepResult result =
+        cloth::check_step(input, body_ ? body_->vertex_count() : 0, garments_.known());
     if (result != StepResult::ok) {
         return result;
     }
@@ -133,7 +97,7 @@ StepResult ClothWorld::step(const StepInput& input) noexcept {
     const auto substep = static_cast<float>(input.dt_s / count);
     body_->set_motion(input.body_before, input.body_after, static_cast<float>(input.dt_s));
     for (const GarmentFrame& frame : input.garments) {
-        Entry& entry = *find(frame.garment);
+        Entry& entry = *garments_.find(frame.garment);
         entry.cloth.begin_step(frame.targets, substep);
         if (input.reset || entry.fresh) {
             entry.cloth.reset();
@@ -147,7 +111,7 @@ StepResult ClothWorld::step(const StepInput& input) noexcept {
     const float since_last = substep > 0.0f ? simulate(input.dt_s, count) : 0.0f;
     body_->place(1.0f);
     for (const GarmentFrame& frame : input.garments) {
-        Entry& entry = *find(frame.garment);
+        Entry& entry = *garments_.find(frame.garment);
         if (!entry.cloth.finite()) {
             entry.cloth.reset();
             result = StepResult::recovered;

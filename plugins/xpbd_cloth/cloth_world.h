@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloth/cloth_contacts.h"
+#include "cloth/garment_roster.h"
 #include "cloth/step.h"
 #include "xpbd_cloth/garment_cloth.h"
 
@@ -12,7 +13,6 @@ namespace toile::xpbd_cloth {
 
 using cloth::BodyRest;
 using cloth::GarmentFrame;
-using cloth::KnownGarment;
 using cloth::step_result_text;
 using cloth::StepInput;
 using cloth::StepResult;
@@ -33,20 +33,15 @@ class ClothWorld {
 
     [[nodiscard]] std::size_t garment_count() const noexcept { return garments_.size(); }
     /// \throw Error when there is no such garment
-    [[nodiscard]] const GarmentCloth& garment(std::uint32_t handle) const;
+    [[nodiscard]] const GarmentCloth& garment(std::uint32_t handle) const {
+        return garments_.at(handle);
+    }
     void set_settings(const Settings& settings) { settings_ = settings; }
 
   private:
-    struct Entry {
-        std::uint32_t handle;
-        bool fresh = true;     ///< begins from its targets at the next step
-        std::size_t first = 0; ///< of its rows
-        GarmentCloth cloth;
-    };
-
-    /// Gives every garment its rows and lists them; those that had some keep what they hold.
+    using Entry = cloth::GarmentRoster<GarmentCloth>::Entry;
+    /// Gives every garment its rows; those that had some keep what they hold.
     void arrange();
-    [[nodiscard]] Entry* find(std::uint32_t handle) noexcept;
     /// \return seconds from the last refresh of the contacts to the end of the step
     float simulate(double dt_s, std::uint32_t substeps) noexcept;
     [[nodiscard]] std::uint32_t substeps_of(double dt_s) const noexcept;
@@ -54,11 +49,9 @@ class ClothWorld {
     Settings settings_;
     std::optional<MovingBody> rest_body_; ///< stays as it was given
     std::optional<MovingBody> body_;
-    std::vector<Entry> garments_;
-    std::vector<KnownGarment> known_; ///< the same, as the check of a step reads them
-    std::vector<Vec4> x_, q_, v_;     ///< rows of all garments
+    cloth::GarmentRoster<GarmentCloth> garments_;
+    std::vector<Vec4> x_, q_, v_; ///< rows of all garments
     cloth::ClothContacts cloth_contacts_;
-    std::uint32_t next_handle_ = 1;
     std::uint32_t frame_ = 1; ///< steps since the last reset
 };
 

@@ -24,6 +24,7 @@ const std::map<std::string, Names> kArrows = {
     {"assets", {"geometry", "imaging"}},
     {"body", {"assets"}},
     {"cloth", {"geometry"}},
+    {"boundary", {"sdk", "body", "cloth"}},
     {"garment", {"body"}},
     {"host", {"abi", "core"}},
     {"pipeline", {"host", "garment"}},
@@ -33,7 +34,7 @@ const std::map<std::string, Names> kArrows = {
 
 // A plugin: the boundary, and the engine's algorithms up to garment.
 const Names kPluginLayers = {"abi",    "sdk",  "core",  "geometry", "imaging",
-                             "assets", "body", "cloth", "garment"};
+                             "assets", "body", "cloth", "boundary", "garment"};
 
 struct Library {
     const char* name;

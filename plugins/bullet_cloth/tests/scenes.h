@@ -19,4 +19,9 @@ inline Settings free_fall() {
     return settings;
 }
 
+/// Small enough steps for closed forms of what swings.
+inline Settings finely(const Settings& settings) {
+    return settings;
+}
+
 } // namespace toile::bullet_cloth::test

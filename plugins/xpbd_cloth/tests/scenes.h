@@ -21,4 +21,10 @@ inline Settings free_fall() {
     return settings;
 }
 
+/// Small enough steps for closed forms of what swings.
+inline Settings finely(Settings settings) {
+    settings.substep_rate = 2400.0;
+    return settings;
+}
+
 } // namespace toile::xpbd_cloth::test
