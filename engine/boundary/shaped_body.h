@@ -17,8 +17,7 @@ class ShapedBody {
     ShapedBody(const body::BodyModel& model, const body::BodyShape& shape,
                std::span<const double> coefficients, const body::Measurements& measurements,
                std::uint64_t revision)
-        : rest_(shape.positions),
-          normals_(rest_.size()),
+        : rest_(shape.positions), normals_(rest_.size()),
           joints_(shape.skeleton.rest_positions.begin(), shape.skeleton.rest_positions.end()) {
         for (const double c : coefficients)
             coefficients_.push_back(static_cast<float>(c));

@@ -319,8 +319,8 @@ fs::path random_walk(const body::TestPerson& person, double seconds, std::uint64
 
 /// Arms hanging, for longer than anybody looks.
 fs::path stand_still(const body::TestPerson& person) {
-    const fs::path file =
-        fs::temp_directory_path() / ("toile_stand_" + std::to_string(getpid()) + ".jsonl");
+    const fs::path file = fs::temp_directory_path() /
+                          ("toile_stand_" + std::to_string(getpid()) + "_" + person.id + ".jsonl");
     body::Pose pose = body::usual_pose(person.skeleton, body::usual_arms().front(), 0.0f);
     pose.hips_position.y() -=
         body::lowest_sole(person.skeleton, body::forward_kinematics(person.skeleton, pose));

@@ -214,7 +214,6 @@ void stand_together(const Bench& bench) {
     std::vector<fs::path> standing;
     for (std::size_t n = 0; n < 6; ++n) {
         const fs::path& folder = bench.people[n % bench.people.size()];
-        // Each call overwrites the file of the one before; poses differ by less than a stature.
         standing.push_back(stand_still(body::load_test_person(folder)));
         // Three in front, three behind in the gaps.
         const float x = -1.2f + 1.1f * static_cast<float>(n % 3) - (n < 3 ? 0.0f : 0.55f);

@@ -1,5 +1,6 @@
-// How cloth moves by closed forms, for every cloth plugin. Included after a plugin's scenes.h, which
-// names the plugin and has `free_fall` and `finely`, the settings of a test that wants small steps.
+// How cloth moves by closed forms, for every cloth plugin. Included after a plugin's scenes.h,
+// which names the plugin and has `free_fall` and `finely`, the settings of a test that wants small
+// steps.
 #pragma once
 
 #include <gtest/gtest.h>
