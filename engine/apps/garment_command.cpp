@@ -1,6 +1,7 @@
-// toile garment list | check | new | pack
+// toile garment list | check | new | draft | pack
 #include "apps/commands.h"
 #include "apps/garment_block_command.h"
+#include "apps/garment_draft_command.h"
 #include "body/body_model.h"
 #include "core/error.h"
 #include "garment/import.h"
@@ -215,6 +216,7 @@ void add_garment_commands(CLI::App& app, const GlobalOptions& /*options*/) {
     add_list(*garment);
     add_check(*garment);
     add_new(*garment);
+    add_garment_draft(*garment, limits);
     add_pack(*garment);
 }
 

@@ -58,7 +58,7 @@ Look::Look(render::Context& context, const render::RendererOptions& options,
 
 void Look::add_body() {
     const body::BodyModel& model = person_.body().model();
-    const assets::Scene appearance = assets::load_scene(model.folder / (model.id + ".glb"));
+    const assets::Scene appearance = assets::load_scene(model.appearance);
     const auto materials = render::add_materials(renderer_, appearance);
 
     const std::set<body::Part> masked = masked_parts(person_);

@@ -46,7 +46,7 @@ assets::Primitive posed_body(const pipeline::DressedPerson& person) {
 /// The body first, then the garments; one mesh each.
 assets::Scene scene_of(const pipeline::DressedPerson& person) {
     const body::BodyModel& model = person.body().model();
-    const assets::Scene appearance = assets::load_scene(model.folder / (model.id + ".glb"));
+    const assets::Scene appearance = assets::load_scene(model.appearance);
     assets::Scene scene;
     const int body_material = append_materials(scene, appearance);
     assets::Primitive body = posed_body(person);

@@ -47,11 +47,15 @@ Scene load_scene(const std::filesystem::path& file, const ImportLimits& limits) 
     return scene;
 }
 
-void save_scene(const Scene& scene, const std::filesystem::path& file) {
+void save_scene(const Scene& scene, const std::filesystem::path& file, const SaveOptions& options) {
     const std::string extension = lower_extension(file);
-    if (extension == ".glb")
-        write_bytes(file, write_glb(scene));
-    else if (extension == ".obj")
+    if (extension == ".glb") {
+        write_bytes(file, write_glb(scene, options));
+        for (const Texture& texture : scene.textures)
+            if (options.textures_beside)
+                write_bytes(file.parent_path() / (texture.name + ".png"),
+                            imaging::encode_png(texture.image));
+    } else if (extension == ".obj")
         write_text(file, write_obj(scene));
     else if (extension == ".ply")
         write_bytes(file, write_ply(scene));

@@ -24,8 +24,18 @@ struct ImportLimits {
 /// what is wrong with it
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const ImportLimits& limits = {});
 
+struct SaveOptions {
+    /// KHR_mesh_quantization: positions of meshes without skin and morphs in steps of 1 / 32768 m,
+    /// normals of 1 / 127. Those meshes' nodes must stand at the origin and every position within
+    /// 1 m of (0, 1, 0); others stay as they are.
+    bool compact = false;
+    /// Textures as PNG files beside the .glb, named as the textures, instead of in it.
+    bool textures_beside = false;
+};
+
 /// Writes .glb, .obj or .ply. A .glb holds everything; .obj and .ply geometry only.
 /// \throw Error
-void save_scene(const Scene& scene, const std::filesystem::path& file);
+void save_scene(const Scene& scene, const std::filesystem::path& file,
+                const SaveOptions& options = {});
 
 } // namespace toile::assets

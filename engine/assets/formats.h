@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assets/budget.h"
+#include "assets/files.h"
 #include "assets/scene.h"
 
 #include <cstdint>
@@ -20,7 +21,8 @@ namespace toile::assets {
 [[nodiscard]] Scene read_fbx(const std::filesystem::path& file, Budget& budget);
 
 /// A whole .glb. \throw Error when the scene contradicts itself
-[[nodiscard]] std::vector<std::uint8_t> write_glb(const Scene& scene);
+[[nodiscard]] std::vector<std::uint8_t> write_glb(const Scene& scene,
+                                                  const SaveOptions& options = {});
 /// Geometry only, all meshes where their nodes stand, text. \throw Error
 [[nodiscard]] std::string write_obj(const Scene& scene);
 [[nodiscard]] std::vector<std::uint8_t> write_ply(const Scene& scene);

@@ -2,6 +2,8 @@
 #include "assets/formats.h"
 #include "assets/skins.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <sstream>
@@ -22,7 +24,10 @@ std::vector<double> numbers(const Eigen::Matrix<float, Rows, 1>& v) {
 
 class Writer {
   public:
-    explicit Writer(const Scene& scene) : scene_(scene) { model_.buffers.resize(1); }
+    Writer(const Scene& scene, const SaveOptions& options) : scene_(scene), options_(options) {
+        model_.buffers.resize(1);
+        find_compact();
+    }
 
     std::vector<std::uint8_t> run() {
         model_.asset.version = "2.0";
@@ -123,11 +128,17 @@ class Writer {
         sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
         model_.samplers.push_back(sampler);
         for (const Texture& from : scene_.textures) {
-            const std::vector<std::uint8_t> png = imaging::encode_png(from.image);
             tinygltf::Image image;
             image.name = from.name;
-            image.mimeType = "image/png";
-            image.bufferView = add_view(png.data(), png.size(), 0);
+            if (options_.textures_beside) {
+                if (from.name.empty() || from.name.find('/') != std::string::npos)
+                    fail("a texture's name is no name of a file");
+                image.uri = from.name + ".png";
+            } else {
+                const std::vector<std::uint8_t> png = imaging::encode_png(from.image);
+                image.mimeType = "image/png";
+                image.bufferView = add_view(png.data(), png.size(), 0);
+            }
             tinygltf::Texture texture;
             texture.sampler = 0;
             texture.source = static_cast<int>(model_.images.size());
@@ -195,7 +206,7 @@ class Writer {
             check_primitive(primitive, who);
             if (primitive.morphs.size() != from.primitives.front().morphs.size())
                 fail(who + ": its primitives differ in their morph targets");
-            mesh.primitives.push_back(convert(primitive));
+            mesh.primitives.push_back(convert(primitive, compact_[index]));
         }
         if (!from.primitives.front().morphs.empty()) {
             Value::Array names;
@@ -210,13 +221,81 @@ class Writer {
         model_.meshes.push_back(std::move(mesh));
     }
 
-    tinygltf::Primitive convert(const Primitive& from) {
+    // Meshes that only nodes at the origin show, without skin and morphs.
+    void find_compact() {
+        compact_.assign(scene_.meshes.size(), options_.compact);
+        for (std::size_t m = 0; m < scene_.meshes.size(); ++m)
+            for (const Primitive& p : scene_.meshes[m].primitives) {
+                if (!p.morphs.empty() || !p.joints.empty()) compact_[m] = false;
+                for (const Vec3f& v : p.positions)
+                    if (!((v - kMiddle).cwiseAbs().maxCoeff() < 1.0f)) compact_[m] = false;
+            }
+        for (const Node& node : scene_.nodes)
+            if (node.mesh >= 0 && node.mesh < static_cast<int>(scene_.meshes.size()) &&
+                (node.parent != kNone || !node.translation.isZero(0.0f) ||
+                 node.scale != Vec3f::Ones() ||
+                 node.rotation.coeffs() != Quatf::Identity().coeffs()))
+                compact_[static_cast<std::size_t>(node.mesh)] = false;
+    }
+
+    // `width` numbers of a small type, padded to four bytes an element.
+    template <typename T>
+    int add_padded(const std::vector<std::array<T, 4>>& rows, int component_type, bool normalised,
+                   const std::vector<double>& low, const std::vector<double>& high) {
+        tinygltf::Accessor accessor;
+        accessor.bufferView =
+            add_view(rows.data(), rows.size() * sizeof(rows[0]), TINYGLTF_TARGET_ARRAY_BUFFER);
+        model_.bufferViews.back().byteStride = sizeof(rows[0]);
+        accessor.componentType = component_type;
+        accessor.normalized = normalised;
+        accessor.count = rows.size();
+        accessor.type = TINYGLTF_TYPE_VEC3;
+        accessor.minValues = low;
+        accessor.maxValues = high;
+        model_.accessors.push_back(std::move(accessor));
+        return static_cast<int>(model_.accessors.size()) - 1;
+    }
+
+    int add_small_positions(const std::vector<Vec3f>& positions) {
+        std::vector<std::array<std::int16_t, 4>> rows;
+        rows.reserve(positions.size());
+        std::vector<double> low(3, 1e9);
+        std::vector<double> high(3, -1e9);
+        for (const Vec3f& p : positions) {
+            auto& row = rows.emplace_back();
+            for (int k = 0; k < 3; ++k) {
+                const float steps = std::round((p[k] - kMiddle[k]) / kStep);
+                row[static_cast<std::size_t>(k)] =
+                    static_cast<std::int16_t>(std::clamp(steps, -32767.0f, 32767.0f));
+                const auto i = static_cast<std::size_t>(k);
+                low[i] = std::min(low[i], static_cast<double>(row[i]));
+                high[i] = std::max(high[i], static_cast<double>(row[i]));
+            }
+        }
+        return add_padded(rows, TINYGLTF_COMPONENT_TYPE_SHORT, false, low, high);
+    }
+
+    int add_small_normals(const std::vector<Vec3f>& normals) {
+        std::vector<std::array<std::int8_t, 4>> rows;
+        rows.reserve(normals.size());
+        for (const Vec3f& n : normals) {
+            auto& row = rows.emplace_back();
+            for (int k = 0; k < 3; ++k)
+                row[static_cast<std::size_t>(k)] =
+                    static_cast<std::int8_t>(std::lround(127.0f * n[k]));
+        }
+        return add_padded(rows, TINYGLTF_COMPONENT_TYPE_BYTE, true, {}, {});
+    }
+
+    tinygltf::Primitive convert(const Primitive& from, bool compact) {
         tinygltf::Primitive primitive;
         primitive.mode = TINYGLTF_MODE_TRIANGLES;
         primitive.material = from.material;
-        primitive.attributes["POSITION"] = add_vectors(from.positions, true);
+        primitive.attributes["POSITION"] =
+            compact ? add_small_positions(from.positions) : add_vectors(from.positions, true);
         if (!from.normals.empty())
-            primitive.attributes["NORMAL"] = add_vectors(unit(from.normals), false);
+            primitive.attributes["NORMAL"] = compact ? add_small_normals(unit(from.normals))
+                                                     : add_vectors(unit(from.normals), false);
         if (!from.texcoords.empty())
             primitive.attributes["TEXCOORD_0"] = add_accessor(
                 from.texcoords.data(), from.texcoords.size(), 2, TINYGLTF_COMPONENT_TYPE_FLOAT,
@@ -296,6 +375,10 @@ class Writer {
             node.name = from.name;
             node.mesh = from.mesh;
             node.skin = from.skin;
+            if (node.mesh != kNone && compact_[static_cast<std::size_t>(node.mesh)]) {
+                node.translation = numbers<3>(kMiddle);
+                node.scale = std::vector<double>(3, static_cast<double>(kStep));
+            }
             if (!from.translation.isZero(0.0f)) node.translation = numbers<3>(from.translation);
             if (from.scale != Vec3f::Ones()) node.scale = numbers<3>(from.scale);
             if (from.rotation.coeffs() != Quatf::Identity().coeffs())
@@ -355,6 +438,10 @@ class Writer {
 
     void write_extensions() {
         if (sheen_) model_.extensionsUsed.emplace_back("KHR_materials_sheen");
+        if (std::find(compact_.begin(), compact_.end(), true) != compact_.end()) {
+            model_.extensionsUsed.emplace_back("KHR_mesh_quantization");
+            model_.extensionsRequired.emplace_back("KHR_mesh_quantization");
+        }
         if (scene_.variants.empty()) return;
         model_.extensionsUsed.emplace_back("KHR_materials_variants");
         Value::Array variants;
@@ -368,17 +455,22 @@ class Writer {
         model_.extensions["KHR_materials_variants"] = Value(extension);
     }
 
+    static constexpr float kStep = 1.0f / 32768.0f; // metres, of compact positions
+    inline static const Vec3f kMiddle{0.0f, 1.0f, 0.0f};
+
     const Scene& scene_;
+    const SaveOptions& options_;
+    std::vector<bool> compact_; // (meshes)
     tinygltf::Model model_;
     bool sheen_ = false;
 };
 
 } // namespace
 
-std::vector<std::uint8_t> write_glb(const Scene& scene) {
+std::vector<std::uint8_t> write_glb(const Scene& scene, const SaveOptions& options) {
     Scene checked = scene;
     check_skins(checked, "scene to be written");
-    return Writer(checked).run();
+    return Writer(checked, options).run();
 }
 
 } // namespace toile::assets

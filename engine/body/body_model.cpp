@@ -1,6 +1,7 @@
 #include "body/body_model.h"
 
 #include "assets/files.h"
+#include "body/body_file.h"
 #include "core/json.h"
 #include "core/paths.h"
 
@@ -202,6 +203,13 @@ std::optional<Part> part_from_label(std::string_view name) {
 
 BodyModel load_body_model(const fs::path& folder) {
     const fs::path json_file = folder / "avatar.json";
+    std::error_code code;
+    if (const fs::path body = folder / "body.json";
+        !fs::exists(json_file, code) && fs::exists(body, code)) {
+        BodyModel out = load_body(body);
+        out.id = fs::absolute(folder).lexically_normal().filename().string();
+        return out;
+    }
     const nlohmann::json json = parse_json_file(json_file);
     JsonObject avatar(json, json_file.string());
     BodyModel out;
@@ -212,6 +220,7 @@ BodyModel load_body_model(const fs::path& folder) {
     out.name = avatar.text("name");
     avatar.text("licence");
     const fs::path model_file = folder / avatar.file_name("model");
+    out.appearance = model_file;
     const std::string model = model_file.string();
 
     const assets::Scene scene = assets::load_scene(model_file);
@@ -243,10 +252,18 @@ BodyModel load_body_model(const fs::path& folder) {
     return out;
 }
 
-fs::path find_avatar(const std::string& id) {
+namespace {
+
+bool is_avatar(const fs::path& folder) {
     std::error_code code; // of a name that is too long for a file there is none
+    return fs::exists(folder / "avatar.json", code) || fs::exists(folder / "body.json", code);
+}
+
+} // namespace
+
+fs::path find_avatar(const std::string& id) {
     for (const auto& root : data_folders("avatars"))
-        if (fs::exists(root / id / "avatar.json", code)) return root / id;
+        if (is_avatar(root / id)) return root / id;
     std::string known;
     for (const auto& other : list_avatars())
         known += (known.empty() ? "" : ", ") + other;
@@ -257,8 +274,7 @@ std::vector<std::string> list_avatars() {
     std::set<std::string> ids;
     for (const auto& root : data_folders("avatars"))
         for (const auto& entry : fs::directory_iterator(root))
-            if (fs::exists(entry.path() / "avatar.json"))
-                ids.insert(entry.path().filename().string());
+            if (is_avatar(entry.path())) ids.insert(entry.path().filename().string());
     return {ids.begin(), ids.end()};
 }
 

@@ -52,8 +52,9 @@ struct BodyModel {
     std::string version; ///< semver
     std::string name;    ///< for people
     std::filesystem::path folder;
-    geometry::TriangleMesh rest;   ///< A pose, feet on y = 0, faces +Z; with normals
-    geometry::SeamedLayout layout; ///< for drawing
+    std::filesystem::path appearance; ///< the .glb with its texture
+    geometry::TriangleMesh rest;      ///< A pose, feet on y = 0, faces +Z; with normals
+    geometry::SeamedLayout layout;    ///< for drawing
     Skeleton skeleton;
     SkinWeights skin;
     std::vector<Part> parts;                        ///< (nv)
@@ -62,7 +63,9 @@ struct BodyModel {
     std::vector<ShapeComponent> shape;              ///< empty for a fixed avatar
 };
 
-/// Loads avatars/<id>/avatar.json and the .glb it names. \throw Error naming what is wrong
+/// Loads avatars/<id>/avatar.json and the .glb it names; or, where there is none, the body.json
+/// there (one person of a body space), whose id is then the folder's name.
+/// \throw Error naming what is wrong
 [[nodiscard]] BodyModel load_body_model(const std::filesystem::path& folder);
 
 /// Folder of an avatar by id in the data folders. \throw Error listing the known ids

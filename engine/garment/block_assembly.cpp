@@ -106,7 +106,8 @@ void weld(Assembly& assembly, const Pattern& pattern) {
         first.push_back(half);
         half += flat.points.size();
     }
-    UnionFind same(2 * half);
+    const std::size_t sides = assembly.sides;
+    UnionFind same(sides * half);
     for (const Seam& seam : pattern.seams) {
         const std::size_t a = pattern.panel_index(seam.panel_a);
         const std::size_t b = pattern.panel_index(seam.panel_b);
@@ -117,7 +118,9 @@ void weld(Assembly& assembly, const Pattern& pattern) {
         }
         for (std::size_t i = 0; i < va.size(); ++i) {
             same.join(first[a] + va[i], first[b] + vb[i]);
-            same.join(half + first[a] + va[i], half + first[b] + vb[i]);
+            if (sides == 2) {
+                same.join(half + first[a] + va[i], half + first[b] + vb[i]);
+            }
         }
     }
     for (const CentreSeam& centre : pattern.centres) {
@@ -127,9 +130,9 @@ void weld(Assembly& assembly, const Pattern& pattern) {
         }
     }
     constexpr auto kUnset = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> number(2 * half, kUnset);
+    std::vector<std::uint32_t> number(sides * half, kUnset);
     std::uint32_t count = 0;
-    for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t side = 0; side < sides; ++side) {
         assembly.welded[side].resize(panels);
         for (std::size_t p = 0; p < panels; ++p) {
             for (std::size_t v = 0; v < assembly.flats[p].points.size(); ++v) {
@@ -142,8 +145,8 @@ void weld(Assembly& assembly, const Pattern& pattern) {
     assembly.mirror.resize(count);
     for (std::size_t p = 0; p < panels; ++p) {
         for (std::size_t v = 0; v < assembly.flats[p].points.size(); ++v) {
-            assembly.mirror[assembly.welded[0][p][v]] = assembly.welded[1][p][v];
-            assembly.mirror[assembly.welded[1][p][v]] = assembly.welded[0][p][v];
+            assembly.mirror[assembly.welded[0][p][v]] = assembly.welded[sides - 1][p][v];
+            assembly.mirror[assembly.welded[sides - 1][p][v]] = assembly.welded[0][p][v];
         }
     }
 }
@@ -154,12 +157,17 @@ bool runs_against_u(const HalfPanel& panel, const std::size_t side) {
 
 void collect_triangles(Assembly& assembly, const Pattern& pattern) {
     for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
-        for (std::size_t side = 0; side < 2; ++side) {
+        for (std::size_t side = 0; side < assembly.sides; ++side) {
             for (Triangle t : assembly.flats[p].triangles) {
                 if (runs_against_u(pattern.panels[p], side)) {
                     std::swap(t[1], t[2]);
                 }
                 const auto& welded = assembly.welded[side][p];
+                // A corner whose two edges are sewn to each other folds flat.
+                if (welded[t[0]] == welded[t[1]] || welded[t[1]] == welded[t[2]] ||
+                    welded[t[2]] == welded[t[0]]) {
+                    continue;
+                }
                 assembly.triangles.push_back({welded[t[0]], welded[t[1]], welded[t[2]]});
                 assembly.triangle_panel.push_back(static_cast<std::uint16_t>(p));
                 assembly.triangle_side.push_back(static_cast<std::uint8_t>(side));
@@ -212,7 +220,7 @@ std::vector<Vec3d> place(const Assembly& assembly, const Pattern& pattern,
     std::vector<double> count(assembly.vertex_count(), 0.0);
     std::vector<int> priority(assembly.vertex_count(), std::numeric_limits<int>::min());
     for (std::size_t p = 0; p < own.size(); ++p) {
-        for (std::size_t side = 0; side < 2; ++side) {
+        for (std::size_t side = 0; side < assembly.sides; ++side) {
             for (std::size_t v = 0; v < own[p].size(); ++v) {
                 const std::uint32_t id = assembly.welded[side][p][v];
                 if (pattern.panels[p].priority > priority[id]) {
@@ -237,7 +245,7 @@ std::vector<Vec3d> place(const Assembly& assembly, const Pattern& pattern,
         }
         const std::vector<Vec3d> all = harmonic(assembly.flats[p], move);
         for (std::size_t v = assembly.flats[p].border_count; v < own[p].size(); ++v) {
-            for (std::size_t side = 0; side < 2; ++side) {
+            for (std::size_t side = 0; side < assembly.sides; ++side) {
                 sum[assembly.welded[side][p][v]] = mirrored(own[p][v] + all[v], side);
             }
         }
@@ -250,6 +258,7 @@ std::vector<Vec3d> place(const Assembly& assembly, const Pattern& pattern,
 Assembly assemble(const Pattern& base, const double edge_m) {
     Assembly assembly;
     assembly.edge_m = edge_m;
+    assembly.sides = base.symmetric ? 2 : 1;
     assembly.pieces = count_pieces(base, edge_m);
     for (std::size_t p = 0; p < base.panels.size(); ++p) {
         const auto outline = outline_of(base.panels[p], assembly.pieces[p]);

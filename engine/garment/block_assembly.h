@@ -8,10 +8,11 @@ namespace toile::garment::block {
 /// What all sizes of a block share. Side 0 is the body's left (+x), side 1 its mirror image.
 struct Assembly {
     double edge_m = 0.0;
+    std::size_t sides = 2;                        ///< 1: a pattern of whole panels
     std::vector<FlatMesh> flats;                  ///< (panels) of the base size
     std::vector<std::vector<std::size_t>> pieces; ///< (panels)(curves) edges on each curve
     std::array<std::vector<std::vector<std::uint32_t>>, 2> welded; ///< [side][panel][flat vertex]
-    std::vector<std::uint32_t> mirror;         ///< (nv) the mirror image of each vertex
+    std::vector<std::uint32_t> mirror;         ///< (nv) the mirror image of each vertex; itself
     std::vector<Triangle> triangles;           ///< (nf) counter-clockwise from outside
     std::vector<std::uint16_t> triangle_panel; ///< (nf)
     std::vector<std::uint8_t> triangle_side;   ///< (nf)

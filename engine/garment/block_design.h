@@ -26,7 +26,7 @@ struct Design {
     std::string id, name, kind;
     double edge_m = 0.0155; ///< of the simulation mesh
     /// Its pattern for a body, that much wider than the body (none: as wide as is usual).
-    Pattern (*draft)(const BodyProbe&, std::optional<double> girth_ease_m) = nullptr;
+    std::function<Pattern(const BodyProbe&, std::optional<double> girth_ease_m)> draft;
     std::optional<double> girth_ease_m; ///< metres beyond chest or hip
     Fabric fabric;
     double ease_m = 0.006;

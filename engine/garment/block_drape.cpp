@@ -98,6 +98,43 @@ class Drape {
         }
     }
 
+    [[nodiscard]] double mean_height() const {
+        double sum = 0.0;
+        for (const Vec3d& p : x_) {
+            sum += p.y() / static_cast<double>(x_.size());
+        }
+        return sum;
+    }
+
+    void mark() { marked_ = x_; }
+
+    // RMS over the vertices, metres; `farthest` gets the vertex that went farthest.
+    [[nodiscard]] double way_since_mark(std::uint32_t& farthest) const {
+        double sum = 0.0;
+        double most = 0.0;
+        for (std::size_t i = 0; i < x_.size(); ++i) {
+            const double way = (x_[i] - marked_[i]).squaredNorm();
+            sum += way / static_cast<double>(x_.size());
+            if (way > most) {
+                most = way;
+                farthest = static_cast<std::uint32_t>(i);
+            }
+        }
+        return std::sqrt(sum);
+    }
+
+    [[nodiscard]] double worst_strain(std::uint32_t& vertex) const {
+        double worst = 0.0;
+        for (const auto& [a, b, rest] : edges_) {
+            const double strain = (x_[b] - x_[a]).norm() / rest - 1.0;
+            if (strain > worst) {
+                worst = strain;
+                vertex = a;
+            }
+        }
+        return worst;
+    }
+
   private:
     void stretch(const bool backwards) {
         const double spring = 0.5 * std::sqrt(3.0) * options_.stretch_n_m;
@@ -178,7 +215,7 @@ class Drape {
     const DistanceField& body_;
     const DrapeOptions& options_;
     std::vector<RestEdge> edges_, hinges_;
-    std::vector<Vec3d> velocity_, before_;
+    std::vector<Vec3d> velocity_, before_, marked_;
     std::vector<double> inverse_mass_, lambda_;
     double seconds_ = kStep;
 };
@@ -203,20 +240,38 @@ std::vector<RestEdge> rest_edges(const std::span<const Triangle> triangles,
     return out;
 }
 
-void drape(const Assembly& assembly, SizedBlock& block, const DistanceField& body,
-           const std::span<const std::uint8_t> held, const DrapeOptions& options) {
+DrapeReport drape(const Assembly& assembly, SizedBlock& block, const DistanceField& body,
+                  const std::span<const std::uint8_t> held, const DrapeOptions& options) {
     Drape cloth(assembly, block, body, held, options);
+    const bool mirrored = assembly.sides == 2;
     for (int i = 0; i < options.shrink_steps; ++i) {
-        cloth.step(kStep, 0.0, 0.8, true);
+        cloth.step(kStep, 0.0, 0.8, mirrored);
     }
+    const double height = cloth.mean_height();
     for (int i = 0; i < options.settle_steps; ++i) {
-        cloth.step(kStep, kGravity, 0.99, true);
+        cloth.step(kStep, kGravity, 0.99, mirrored);
     }
-    for (int i = 0; i < options.finish_steps; ++i) {
-        const bool symmetric = i + 100 < options.finish_steps;
-        cloth.step(i < options.finish_steps / 2 ? kMediumStep : kShortStep, kGravity, 0.985,
-                   symmetric);
+    DrapeReport report;
+    const int last = static_cast<int>(0.1 / kShortStep);
+    // Heavy cloth that still swings gets more time, at most three times as much, in thicker air.
+    constexpr double kAtRest = 0.03;
+    for (int round = 0; round < 3; ++round) {
+        for (int i = 0; i < options.finish_steps; ++i) {
+            const bool symmetric = mirrored && i + 100 < options.finish_steps;
+            if (i + last == options.finish_steps) {
+                cloth.mark();
+            }
+            cloth.step(round == 0 && i < options.finish_steps / 2 ? kMediumStep : kShortStep,
+                       kGravity, round == 0 ? 0.985 : 0.93, symmetric);
+        }
+        report.rms_speed = cloth.way_since_mark(report.fastest) / (last * kShortStep);
+        if (report.rms_speed < kAtRest) {
+            break;
+        }
     }
+    report.dropped_m = height - cloth.mean_height();
+    report.worst_strain = cloth.worst_strain(report.worst_edge);
+    return report;
 }
 
 } // namespace toile::garment::block

@@ -26,9 +26,18 @@ struct RestEdge {
 [[nodiscard]] std::vector<RestEdge> rest_edges(std::span<const Triangle> triangles,
                                                std::span<const Vec2f> material_coords);
 
+/// How a drape ended.
+struct DrapeReport {
+    double rms_speed = 0.0;       ///< m/s, of the way made in the last tenth of a second
+    std::uint32_t fastest = 0;    ///< the vertex that went farthest
+    double worst_strain = 0.0;    ///< of an edge
+    std::uint32_t worst_edge = 0; ///< a vertex of that edge
+    double dropped_m = 0.0;       ///< how far the mean height sank under gravity
+};
+
 /// Moves `block.positions` to rest. `held` (nv) is 1 where a vertex keeps its place. The result is
-/// symmetric but for what contact with the body asks.
-void drape(const Assembly& assembly, SizedBlock& block, const DistanceField& body,
-           std::span<const std::uint8_t> held, const DrapeOptions& options);
+/// symmetric, if the pattern is, but for what contact with the body asks.
+DrapeReport drape(const Assembly& assembly, SizedBlock& block, const DistanceField& body,
+                  std::span<const std::uint8_t> held, const DrapeOptions& options);
 
 } // namespace toile::garment::block

@@ -4,12 +4,20 @@
 #include "core/random.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
 namespace toile::garment::block {
 namespace {
+
+constexpr std::array<std::pair<std::string_view, Weave>, 6> kWeaves = {{{"jersey", Weave::jersey},
+                                                                        {"rib", Weave::rib},
+                                                                        {"twill", Weave::twill},
+                                                                        {"plain", Weave::plain},
+                                                                        {"satin", Weave::satin},
+                                                                        {"fleece", Weave::fleece}}};
 
 constexpr double kTau = 2.0 * std::numbers::pi;
 
@@ -68,11 +76,74 @@ double twill_height(const double u, const double v) {
            (0.62 + 0.38 * std::sqrt(std::max(0.0, bow)));
 }
 
+// 1/1 plain weave: warp and weft over each other in turn.
+double plain_height(const double u, const double v) {
+    constexpr int kThreads = 24;
+    const double s = u * kThreads;
+    const double t = v * kThreads;
+    const int i = static_cast<int>(std::floor(s));
+    const int j = static_cast<int>(std::floor(t));
+    const double x = fraction(s) - 0.5;
+    const double y = fraction(t) - 0.5;
+    const bool warp = (i + j) % 2 == 0;
+    const double across = warp ? x : y;
+    const double along = warp ? y : x;
+    const double noise = 0.88 + 0.12 * yarn_noise(warp ? i : 50 + j, 5, kThreads);
+    return noise * std::sqrt(std::max(0.0, 1.0 - 3.2 * across * across)) *
+           (0.6 + 0.4 * std::cos(std::numbers::pi * along));
+}
+
+// Long floats of smooth thread: fine lines along the warp, hardly any relief.
+double satin_height(const double u, const double v) {
+    constexpr int kThreads = 40;
+    const double x = fraction(u * kThreads) - 0.5;
+    const int i = static_cast<int>(std::floor(u * kThreads));
+    const double lift = 0.5 + 0.5 * std::cos(kTau * (v * 8.0 + 0.6 * i));
+    return 0.8 + 0.2 * (1.0 - 2.0 * x * x) * (0.7 + 0.3 * lift);
+}
+
+// Brushed: soft clumps of fibre of several sizes.
+double fleece_height(const double u, const double v) {
+    double sum = 0.0;
+    double weight = 0.0;
+    for (const int cells : {12, 24, 48}) {
+        const double x = u * cells;
+        const double y = v * cells;
+        const int i = static_cast<int>(std::floor(x));
+        const int j = static_cast<int>(std::floor(y));
+        const double s = 0.5 - 0.5 * std::cos(std::numbers::pi * fraction(x));
+        const double t = 0.5 - 0.5 * std::cos(std::numbers::pi * fraction(y));
+        const double low = (1.0 - s) * yarn_noise(i, j, cells) + s * yarn_noise(i + 1, j, cells);
+        const double high =
+            (1.0 - s) * yarn_noise(i, j + 1, cells) + s * yarn_noise(i + 1, j + 1, cells);
+        sum += ((1.0 - t) * low + t * high) * 12.0 / cells;
+        weight += 12.0 / cells;
+    }
+    return 0.4 + 0.6 * sum / weight;
+}
+
 std::uint8_t byte(const double x) {
     return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(x, 0.0, 1.0)));
 }
 
 } // namespace
+
+std::optional<Weave> weave_from_name(const std::string_view name) {
+    for (const auto& [known, weave] : kWeaves) {
+        if (name == known) {
+            return weave;
+        }
+    }
+    return std::nullopt;
+}
+
+std::string weave_names() {
+    std::string names;
+    for (const auto& [known, weave] : kWeaves) {
+        names += (names.empty() ? "" : ", ") + std::string(known);
+    }
+    return names;
+}
 
 FabricTile make_fabric_tile(const Weave weave, const int pixels) {
     std::function<double(double, double)> height;
@@ -88,6 +159,15 @@ FabricTile make_fabric_tile(const Weave weave, const int pixels) {
         break;
     case Weave::twill:
         height = twill_height, tile.width_m = 0.016, relief = 0.008, darkest = 0.70;
+        break;
+    case Weave::plain:
+        height = plain_height, tile.width_m = 0.010, relief = 0.008, darkest = 0.80;
+        break;
+    case Weave::satin:
+        height = satin_height, tile.width_m = 0.012, relief = 0.003, darkest = 0.86;
+        break;
+    case Weave::fleece:
+        height = fleece_height, tile.width_m = 0.030, relief = 0.014, darkest = 0.72;
         break;
     case Weave::invalid:
         throw Error("no such weave");

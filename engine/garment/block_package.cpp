@@ -5,7 +5,9 @@
 #include "imaging/srgb.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace toile::garment::block {
 namespace {
@@ -74,6 +76,11 @@ std::vector<std::uint8_t> held_vertices(const Design& design, const Assembly& as
             for (const std::uint32_t v : assembly.triangles[t]) {
                 held[v] = 1;
             }
+        }
+    }
+    for (const auto& [panel, edge] : pattern.held) {
+        for (const std::uint32_t v : edge_vertices(assembly, pattern, 0, panel, edge)) {
+            held[v] = 1;
         }
     }
     return held;
@@ -179,13 +186,54 @@ Manifest make_manifest(const Design& design) {
     return m;
 }
 
+// Names of the panels that a vertex belongs to.
+std::string panels_at(const Pattern& pattern, const Assembly& assembly,
+                      const std::uint32_t vertex) {
+    std::string panels;
+    for (std::size_t t = 0; t < assembly.triangles.size(); ++t) {
+        const std::string name = "'" + pattern.panels[assembly.triangle_panel[t]].name + "'";
+        const auto& corners = assembly.triangles[t];
+        if (std::find(corners.begin(), corners.end(), vertex) != corners.end() &&
+            panels.find(name) == std::string::npos) {
+            panels += (panels.empty() ? "" : " and ") + name;
+        }
+    }
+    return panels;
+}
+
+// Says why a garment does not hang, if it does not.
+void check_drape(const Design& design, const Pattern& pattern, const Assembly& assembly,
+                 const DrapeReport& report, const std::string& size) {
+    const auto refuse = [&](const char* format, const double value, const std::string& rest) {
+        std::array<char, 96> text{};
+        std::snprintf(text.data(), text.size(), format, value);
+        throw Error(design.id + ", size " + size + ": " + text.data() + rest);
+    };
+    if (!std::isfinite(report.rms_speed) || !std::isfinite(report.worst_strain)) {
+        refuse("the cloth blew up (%.0f)", 0.0, "");
+    }
+    if (report.dropped_m > 0.25) {
+        refuse("fell off: it sank by %.2f m while it hung free", report.dropped_m, "");
+    }
+    if (report.worst_strain > 1.0) {
+        refuse("stretched by %.0f %% ", 100.0 * report.worst_strain,
+               "where panel " + panels_at(pattern, assembly, report.worst_edge) +
+                   " lies: a seam gapes there, or the panel is too small");
+    }
+    if (report.rms_speed > 0.05) {
+        refuse("did not come to rest: it still moves at %.3f m/s", report.rms_speed,
+               ", most at panel " + panels_at(pattern, assembly, report.fastest));
+    }
+}
+
 } // namespace
 
 GarmentPackage make_block(const std::string& block, const std::span<const SizeOrder> sizes) {
     return make_block(find_design(block), sizes);
 }
 
-GarmentPackage make_block(const Design& design, const std::span<const SizeOrder> orders) {
+GarmentPackage make_block(const Design& design, const std::span<const SizeOrder> orders,
+                          const WatchDrape& watch) {
     if (orders.empty()) {
         throw UsageError("block '" + design.id + "': no sizes");
     }
@@ -214,7 +262,10 @@ GarmentPackage make_block(const Design& design, const std::span<const SizeOrder>
     for (std::size_t i = 0; i < orders.size(); ++i) {
         SizedBlock block = grade(assembly, patterns[i]);
         const DistanceField field(orders[i].body->rest, 0.008, 0.03);
-        drape(assembly, block, field, held, design.drape);
+        if (watch) watch(orders[i].name, "placed", block.positions, assembly.triangles);
+        const DrapeReport report = drape(assembly, block, field, held, design.drape);
+        if (watch) watch(orders[i].name, "draped", block.positions, assembly.triangles);
+        check_drape(design, patterns[i], assembly, report, orders[i].name);
         GarmentSize size;
         size.entry = package.manifest.sizes[i];
         for (const Vec3d& p : block.positions) {
@@ -225,7 +276,7 @@ GarmentPackage make_block(const Design& design, const std::span<const SizeOrder>
         size.render = make_scene(design, patterns[i], assembly, block);
         package.sizes.push_back(std::move(size));
     }
-    if (!design.held_prefix.empty()) {
+    if (!design.held_prefix.empty() || !base.held.empty()) {
         package.pins = pin_mask(design, assembly, held);
         PinGroup group;
         group.name = "waistband";

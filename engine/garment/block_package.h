@@ -14,12 +14,19 @@ struct SizeOrder {
     std::shared_ptr<const body::BodyModel> body;
 };
 
+/// Told of each size before and after its drape: positions (nv) and triangles, metres. Helps to
+/// see why a pattern does not hang.
+using WatchDrape =
+    std::function<void(const std::string& size, const std::string& stage,
+                       std::span<const Vec3d> positions, std::span<const Triangle> triangles)>;
+
 /// Drafts, sews, drapes and dresses up a block in all sizes, from the smallest to the largest;
 /// the topology is that of the middle one. The package is in memory only: see write_package.
 /// Deterministic; some seconds a size.
 /// \throw Error for an unknown block, or when a size's bodies do not grow from size to size
 [[nodiscard]] GarmentPackage make_block(const std::string& block, std::span<const SizeOrder> sizes);
 /// The same for a design of one's own.
-[[nodiscard]] GarmentPackage make_block(const Design& design, std::span<const SizeOrder> sizes);
+[[nodiscard]] GarmentPackage make_block(const Design& design, std::span<const SizeOrder> sizes,
+                                        const WatchDrape& watch = {});
 
 } // namespace toile::garment::block

@@ -19,7 +19,8 @@ struct Curve {
 };
 
 /// The half of a panel (x >= 0: the side of the body's left arm), or half a sleeve. Patterns are
-/// symmetric: the other half is its mirror image. y runs upwards along the warp.
+/// symmetric, if they do not say otherwise: the other half is its mirror image. y runs upwards
+/// along the warp.
 struct HalfPanel {
     std::string name;
     std::vector<Curve> border;      ///< closed, counter-clockwise; each starts where the last ends
@@ -49,6 +50,8 @@ struct Pattern {
     std::vector<HalfPanel> panels;
     std::vector<Seam> seams;
     std::vector<CentreSeam> centres;
+    std::vector<std::pair<std::string, std::string>> held; ///< panel, edge: held to the body
+    bool symmetric = true; ///< false: the panels are whole and have no mirror images
 
     [[nodiscard]] std::size_t panel_index(const std::string& name) const;
     [[nodiscard]] const Curve& curve(const std::string& panel, const std::string& name) const;

@@ -58,8 +58,10 @@ load_package(const std::filesystem::path& folder_or_zip, const PackageLimits& li
 
 /// Writes `folder`/garment.json and one GLB a size (named by entry.mesh, which must end in .glb):
 /// node `simulation` with the material coordinates as TEXCOORD_0, then the nodes of
-/// GarmentSize::render. Vertex order survives a round trip. \throw Error
-void write_package(const GarmentPackage& package, const std::filesystem::path& folder);
+/// GarmentSize::render. Vertex order survives a round trip. `compact`: positions in steps of
+/// 1 / 32768 m and textures once, as files beside the meshes, for all sizes. \throw Error
+void write_package(const GarmentPackage& package, const std::filesystem::path& folder,
+                   bool compact = false);
 
 /// Packs a sound package folder; only the files it uses, equal input, equal bytes.
 /// \throw PackageError, Error

@@ -76,7 +76,7 @@ int add_joints(assets::Scene& scene) {
     return static_cast<int>(scene.skins.size()) - 1;
 }
 
-assets::Scene scene_of(const GarmentSize& size) {
+assets::Scene scene_of(const GarmentSize& size, const bool compact) {
     assets::Scene scene = size.render;
     const bool drawn_itself = scene.nodes.size() == 1 && scene.nodes.front().name == "simulation";
     assets::Primitive primitive = cut_primitive(size);
@@ -85,6 +85,8 @@ assets::Scene scene_of(const GarmentSize& size) {
         primitive.variant_materials = scene.meshes.front().primitives.front().variant_materials;
         scene.nodes.clear();
         scene.meshes.clear();
+    } else if (compact) {
+        primitive.normals.clear(); // it is not drawn
     }
     assets::Mesh mesh;
     mesh.name = "simulation";
@@ -100,7 +102,7 @@ assets::Scene scene_of(const GarmentSize& size) {
 
 } // namespace
 
-void write_package(const GarmentPackage& package, const fs::path& folder) {
+void write_package(const GarmentPackage& package, const fs::path& folder, const bool compact) {
     std::error_code code;
     fs::create_directories(folder, code);
     GarmentPackage copy;
@@ -113,7 +115,7 @@ void write_package(const GarmentPackage& package, const fs::path& folder) {
             throw Error("size '" + entry.name + "': a package is written as .glb, not " +
                         entry.mesh);
         fs::create_directories((folder / entry.mesh).parent_path(), code);
-        assets::save_scene(scene_of(size), folder / entry.mesh);
+        assets::save_scene(scene_of(size, compact), folder / entry.mesh, {compact, compact});
         copy.manifest.sizes.push_back(std::move(entry));
     }
     write_text(folder / "garment.json", write_manifest(copy.manifest));
