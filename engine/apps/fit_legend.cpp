@@ -36,7 +36,7 @@ class Sheet {
     [[nodiscard]] float height() const { return static_cast<float>(picture_.height) / scale_; }
     [[nodiscard]] imaging::Image take() { return std::move(picture_); }
 
-    static constexpr float kWidth = 266.0f, kLeft = 18.0f;
+    static constexpr float kWidth = 300.0f, kLeft = 18.0f;
 
   private:
     [[nodiscard]] int px(float units) const {
@@ -118,9 +118,9 @@ void draw_regions(Sheet& sheet, const garment::FitReport& fit, float y) {
         for (const garment::RegionFit& region : garment.regions) {
             if (y + 6.0f > sheet.height()) return;
             sheet.words(Sheet::kLeft, y, 14.0f, region_words(region.region), kInk);
-            sheet.words(Sheet::kLeft + 150.0f, y, 14.0f, signed_cm(region.ease_m), kInk,
+            sheet.words(Sheet::kLeft + 168.0f, y, 14.0f, signed_cm(region.ease_m), kInk,
                         LabelStyle::At::end);
-            sheet.words(Sheet::kLeft + 160.0f, y, 14.0f, in_words(region.verdict), kGrey);
+            sheet.words(Sheet::kLeft + 180.0f, y, 14.0f, in_words(region.verdict), kGrey);
             y += kLine;
         }
         y += 8.0f;

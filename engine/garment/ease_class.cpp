@@ -117,10 +117,8 @@ std::string verdict_text(Verdict verdict, double ease_m, const RegionRule& regio
         return capitalised(than) + ", less than this garment wants" +
                (larger ? ": the next size up will feel better" : "");
     case Verdict::tight:
-        return capitalised(than) +
-               ", closer than it was designed; with little beneath it can be "
-               "worn" +
-               (larger ? ", the next size up is easier to move in" : "");
+        return capitalised(than) + ", closer than designed: fine over thin layers" +
+               (larger ? "; the next size up is easier to move in" : "");
     case Verdict::as_intended:
         return "Sits as designed: " + than;
     case Verdict::loose:

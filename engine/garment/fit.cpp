@@ -28,8 +28,7 @@ const std::vector<std::string> kGirths = {
 /// open around the trunk only.
 TapeOptions tape_options(std::string_view girth) {
     const bool trunk = girth == "bust_girth" || girth == "under_bust_girth" ||
-                       girth == "waist_girth" || girth == "high_hip_girth" ||
-                       girth == "hip_girth";
+                       girth == "waist_girth" || girth == "high_hip_girth" || girth == "hip_girth";
     return {girth == "bust_girth" || girth == "upper_arm_girth" ? 0.10f : 0.02f, trunk};
 }
 

@@ -120,8 +120,8 @@ void add_failures(const GarmentFit& fit, std::vector<FitFailure>& failures) {
              of(contact.cutting, contact.triangles) + " triangles pass through others", failures);
     if (fit.strain.rms > kStrain)
         fail(fit, FitFailureCode::overstretched,
-             "its cloth is strained by " + std::to_string(fit.strain.rms) +
-                 " (rms), 0.04 is much; try a larger size",
+             "its cloth is strained by " + std::to_string(std::lround(100.0 * fit.strain.rms)) +
+                 " % (rms), 4 % is much; try a larger size",
              failures);
     const auto far =
         std::count_if(fit.gap_m.begin(), fit.gap_m.end(), [](float gap) { return gap > kFar_m; });

@@ -43,8 +43,9 @@ struct Limb {
 
 std::optional<double> girth(const Limb& limb, const GarmentSize& size,
                             const std::vector<Vec3f>& worn, float height, float reach_m = 0.0f) {
-    const auto tape = lay_around(limb.tape(height), limb.surface(),
-                                 {worn, size.simulation.triangles}, size.material_coords, {reach_m});
+    const auto tape =
+        lay_around(limb.tape(height), limb.surface(), {worn, size.simulation.triangles},
+                   size.material_coords, {reach_m});
     if (!tape) return std::nullopt;
     return tape->flat_length(size.material_coords);
 }
