@@ -2,6 +2,7 @@
 #include "garment/hidden.h"
 
 #include "geometry/mesh.h"
+#include "geometry/nearest_surface.h"
 #include "support/garments.h"
 #include "support/meshes.h"
 
@@ -77,6 +78,35 @@ TEST(Hidden, WhatReachesBeyondTheOuterHemStaysAndAMarginBesideIt) {
     }
     EXPECT_GT(more, 0u);
     EXPECT_GT(less, more);
+}
+
+TEST(Hidden, NoCameraAroundSeesWhatIsHidden) {
+    const Tube inner(0.20f, 0.3f, 1.1f), outer(0.21f, 0.6f, 1.3f);
+    const ClothSurface over = outer.surface();
+    const auto found = hidden(inner, std::span(&over, 1), HiddenOptions().margin_m);
+    ASSERT_GT(std::count(found.begin(), found.end(), 1), 100);
+    // Whatever stands between: the outer tube, the inner one, the pillar.
+    const auto body = pillar();
+    const std::vector<ClothSurface> all = {over, inner.surface(), {body.positions, body.triangles}};
+    std::vector<geometry::NearestSurface> screens;
+    for (const ClothSurface& surface : all)
+        screens.emplace_back(surface.positions, surface.triangles);
+    for (const Vec3f& camera : test::sphere(3.0f, 2).positions) {
+        const Vec3f from = camera + Vec3f(0.0f, 0.8f, 0.0f);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            if (found[i] == 0) continue;
+            const Triangle& t = inner.size.simulation.triangles[i];
+            Vec3f centre = Vec3f::Zero();
+            for (const std::uint32_t v : t)
+                centre += inner.size.simulation.positions[v] / 3.0f;
+            if (inner.normals[t[0]].dot(from - centre) < 0.0f) continue; // its inside
+            EXPECT_TRUE(std::any_of(screens.begin(), screens.end(),
+                                    [&](const auto& screen) {
+                                        return screen.blocked(from, centre - from, 0.0f, 0.999f);
+                                    }))
+                << "triangle " << i << " from " << from.transpose();
+        }
+    }
 }
 
 TEST(Hidden, UnderAWideTubeOneSeesUpFromBelow) {
