@@ -146,6 +146,8 @@ GarmentFit FitAssessor::assess(const WornView& worn, std::vector<FitFailure>& fa
     for (const auto& [name, value] : wearer_.model.measurements)
         measurements[name] = value; // as --size auto sees them
     advise(worn, measurements, fit, failures);
+    for (std::string& reason : other_sizes(fit))
+        fit.reasons.push_back(std::move(reason));
     add_failures(fit, failures);
     return fit;
 }

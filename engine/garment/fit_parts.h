@@ -17,6 +17,10 @@ regions_of_vertices(const WearerView& wearer, const body::Figure& figure,
 [[nodiscard]] std::vector<RegionFit> judge_regions(const WornView& worn,
                                                    std::span<const GirthFit> girths);
 
+/// For each region that is not as intended, what the next size in the right direction would give:
+/// "in L the hip has 7.6 cm of room, in M 1.5 cm". Empty where there is no such size.
+[[nodiscard]] std::vector<std::string> other_sizes(const GarmentFit& fit);
+
 /// Adds stretch and pressure of each region's vertices.
 void add_strain(std::span<const FitRegion> regions, const GarmentFit& fit,
                 std::vector<RegionFit>& to);

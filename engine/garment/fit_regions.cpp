@@ -1,7 +1,9 @@
 #include "garment/fit_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace toile::garment {
@@ -88,6 +90,12 @@ void intend(const WornView& worn, const RegionRule& rule, const GirthFit& girth,
     fit.ease_class = nearest_class(fit.intended_m, rule, made_for_m);
 }
 
+std::string centimetres(double metres) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.1f cm", 100.0 * metres);
+    return text.data();
+}
+
 } // namespace
 
 std::vector<FitRegion> regions_of_vertices(const WearerView& wearer, const body::Figure& figure,
@@ -121,6 +129,31 @@ std::vector<RegionFit> judge_regions(const WornView& worn, std::span<const Girth
             fit.text = verdict_text(fit.verdict, fit.ease_m, rule, smaller, larger);
             out.push_back(std::move(fit));
         }
+    return out;
+}
+
+std::vector<std::string> other_sizes(const GarmentFit& fit) {
+    const auto worn = std::find(fit.sizes.begin(), fit.sizes.end(), fit.size) - fit.sizes.begin();
+    std::vector<std::string> out;
+    for (const RegionFit& region : fit.regions) {
+        const bool narrow =
+            region.verdict == Verdict::tight || region.verdict == Verdict::too_tight;
+        const std::ptrdiff_t other = narrow ? worn + 1 : worn - 1;
+        if (region.verdict == Verdict::as_intended || other < 0 ||
+            other >= static_cast<std::ptrdiff_t>(fit.sizes.size()))
+            continue;
+        const auto girth = std::find_if(fit.girths.begin(), fit.girths.end(),
+                                        [&](const GirthFit& g) { return g.name == region.girth; });
+        const auto rule =
+            std::find_if(region_rules().begin(), region_rules().end(),
+                         [&](const RegionRule& r) { return r.region == region.region; });
+        const auto size = static_cast<std::size_t>(other);
+        const double ease = girth->sizes_m[size] - girth->body_m;
+        if (narrow != (ease > region.ease_m)) continue; // sizes in another order, or alike here
+        out.push_back("in " + fit.sizes[size] + " " + std::string(rule->in_words) + " has " +
+                      centimetres(ease) + " of room, in " + fit.size + " " +
+                      centimetres(region.ease_m));
+    }
     return out;
 }
 

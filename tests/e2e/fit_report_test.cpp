@@ -100,6 +100,7 @@ TEST_F(FitReportTest, ASizeTooSmallIsTightAndALargerOneIsAdvised) {
     const json& waist = row(skirt["regions"], "region", "waist");
     EXPECT_EQ(waist["verdict"], "too_tight");
     EXPECT_GT(waist["pressure_p95_pa"].get<double>(), 1000.0);
+    EXPECT_THAT(skirt["reasons"].dump(), HasSubstr("in M the waist has "));
     const json& eases = row(skirt["measurements"], "name", "waist_girth")["ease_by_size_m"];
     EXPECT_LT(eases["S"], eases["M"]);
     EXPECT_LT(eases["M"], eases["L"]);
