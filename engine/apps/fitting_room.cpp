@@ -42,6 +42,10 @@ std::vector<std::string> split_names(const std::string& list, const std::string&
 FittingRoom::FittingRoom(const GlobalOptions& options, const Outfit& outfit, bool live_clock)
     : services_(options.threads), registry_(services_, registry_options(options)),
       job_({}, &host::interrupt_flag()) {
+    if (outfit.garments.size() > pipeline::kMostGarments)
+        throw UsageError("--garment names " + std::to_string(outfit.garments.size()) +
+                         " garments; at most " + std::to_string(pipeline::kMostGarments) +
+                         " are worn together");
     dressing_.limits = limits_of(options, services_, kDressedPerson, live_clock);
     body_ = load_body(outfit.body);
     std::vector<std::shared_ptr<const pipeline::BoundaryGarment>> garments;

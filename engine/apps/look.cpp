@@ -42,7 +42,7 @@ const garment::Variant* find_variant(const garment::Manifest& manifest, const st
 } // namespace
 
 Look::Look(render::Context& context, const render::RendererOptions& options,
-           const pipeline::DressedPerson& person, const std::string& variant)
+           const pipeline::DressedPerson& person, const std::string& variant, FitMapKind map)
     : person_(person), renderer_(context, options) {
     bool worn = variant.empty();
     for (const pipeline::WornGarment& garment : person_.garments()) {
@@ -51,9 +51,15 @@ Look::Look(render::Context& context, const render::RendererOptions& options,
                                    [&](const auto& v) { return v.name == variant; });
     }
     if (!worn) throw UsageError("no garment has a colourway named '" + variant + "'");
+    if (map != FitMapKind::none) map_ = std::make_unique<FitMap>(person, map);
     add_body();
-    for (const pipeline::WornGarment& garment : person_.garments())
-        add_garment(garment, variant);
+    const render::MaterialId colours = map_ ? map_->material(renderer_) : render::MaterialId::none;
+    for (std::size_t i = 0; i < person_.garments().size(); ++i) {
+        if (map_)
+            add_mapped(person_.garments()[i], i, colours);
+        else
+            add_garment(person_.garments()[i], variant);
+    }
 }
 
 void Look::add_body() {
@@ -81,8 +87,9 @@ void Look::add_body() {
 
     render::Instance instance;
     instance.mesh = body_;
-    instance.material = materials.empty() ? renderer_.add_material(render::mannequin_material())
-                                          : materials.front();
+    instance.material = materials.empty() || map_
+                            ? renderer_.add_material(render::mannequin_material())
+                            : materials.front();
     scene_.instances.push_back(instance);
 }
 
@@ -96,9 +103,15 @@ void Look::add_garment(const pipeline::WornGarment& garment, const std::string& 
                 material.base_color.head<3>().cwiseProduct(*colourway->base_color);
     const auto materials = render::add_materials(renderer_, scene);
 
-    for (const auto& surface : garment.surfaces) {
+    for (std::size_t s = 0; s < garment.surfaces.size(); ++s) {
+        const auto& surface = garment.surfaces[s];
+        const std::vector<Triangle> drawn = garment.drawn_triangles(s);
+        if (drawn.empty()) {
+            surfaces_.push_back(render::MeshId::none);
+            continue;
+        }
         render::MeshDescription description;
-        description.triangles = surface.primitive->triangles;
+        description.triangles = drawn;
         description.texcoords = surface.primitive->texcoords;
         description.positions = surface.positions;
         description.normals = surface.normals;
@@ -117,6 +130,27 @@ void Look::add_garment(const pipeline::WornGarment& garment, const std::string& 
     }
 }
 
+void Look::add_mapped(const pipeline::WornGarment& garment, std::size_t index,
+                      render::MaterialId material) {
+    for (std::size_t s = 0; s < garment.surfaces.size(); ++s) {
+        const std::vector<Triangle> drawn = garment.drawn_triangles(s);
+        if (drawn.empty()) {
+            surfaces_.push_back(render::MeshId::none);
+            continue;
+        }
+        render::MeshDescription description;
+        description.triangles = drawn;
+        description.texcoords = map_->texcoords(index, s);
+        description.positions = garment.surfaces[s].positions;
+        description.normals = garment.surfaces[s].normals;
+        surfaces_.push_back(renderer_.add_mesh(description));
+        render::Instance instance;
+        instance.mesh = surfaces_.back();
+        instance.material = material;
+        scene_.instances.push_back(instance);
+    }
+}
+
 void Look::update() {
     const auto check = [](render::Status status) {
         if (status != render::Status::ok)
@@ -125,8 +159,25 @@ void Look::update() {
     check(renderer_.update_mesh(body_, person_.posed().positions, person_.posed().normals));
     std::size_t next = 0;
     for (const pipeline::WornGarment& garment : person_.garments())
-        for (const auto& surface : garment.surfaces)
-            check(renderer_.update_mesh(surfaces_[next++], surface.positions, surface.normals));
+        for (const auto& surface : garment.surfaces) {
+            const render::MeshId mesh = surfaces_[next++];
+            if (mesh != render::MeshId::none)
+                check(renderer_.update_mesh(mesh, surface.positions, surface.normals));
+        }
+    if (map_) update_map();
+}
+
+void Look::update_map() {
+    map_->update();
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < person_.garments().size(); ++i)
+        for (std::size_t s = 0; s < person_.garments()[i].surfaces.size(); ++s) {
+            const render::MeshId mesh = surfaces_[next++];
+            if (mesh == render::MeshId::none) continue;
+            const auto status = renderer_.update_texcoords(mesh, map_->texcoords(i, s));
+            if (status != render::Status::ok)
+                throw Error(std::string("a fit map cannot be drawn: ") + render::text(status));
+        }
 }
 
 void Look::draw(const render::View& view, const render::Box& box) {

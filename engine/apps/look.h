@@ -1,11 +1,13 @@
 // A dressed person given to the renderer: uploaded once, moved each frame.
 #pragma once
 
+#include "apps/fit_map.h"
 #include "pipeline/dressed_person.h"
 #include "render/frame_uniforms.h"
 #include "render/renderer.h"
 #include "render/views.h"
 
+#include <memory>
 #include <vector>
 
 namespace toile::apps {
@@ -13,10 +15,12 @@ namespace toile::apps {
 /// Not movable. All calls on the context's thread.
 class Look {
   public:
-    /// `variant`: a colourway that every garment having it wears; "" the first of each.
+    /// `variant`: a colourway that every garment having it wears; "" the first of each. `map`: what
+    /// garments are coloured by instead, on a grey body.
     /// \throw Error
     Look(render::Context& context, const render::RendererOptions& options,
-         const pipeline::DressedPerson& person, const std::string& variant = "");
+         const pipeline::DressedPerson& person, const std::string& variant = "",
+         FitMapKind map = FitMapKind::none);
     Look(const Look&) = delete;
     Look& operator=(const Look&) = delete;
 
@@ -31,12 +35,16 @@ class Look {
   private:
     void add_body();
     void add_garment(const pipeline::WornGarment& garment, const std::string& variant);
+    void add_mapped(const pipeline::WornGarment& garment, std::size_t index,
+                    render::MaterialId material);
+    void update_map();
 
     const pipeline::DressedPerson& person_;
     render::Renderer renderer_;
     render::Scene scene_;
     render::MeshId body_ = render::MeshId::none;
-    std::vector<render::MeshId> surfaces_; ///< of all garments, in order
+    std::vector<render::MeshId> surfaces_; ///< of all garments, in order; none: wholly hidden
+    std::unique_ptr<FitMap> map_;
 };
 
 /// Box round the person as it stands now, clothes included. World, metres.

@@ -9,7 +9,9 @@
 #include "apps/run_output.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "garment/fit_file.h"
 #include "pipeline/motion_source.h"
+#include "pipeline/person_fit.h"
 #include "pipeline/try_on_run.h"
 
 namespace toile::apps {
@@ -26,6 +28,8 @@ struct TryOnOptions {
     std::string glb;
     std::string cache;
     std::string report;
+    std::string fit;
+    std::string fit_map;
     std::uint64_t frames = 0;
     PictureOptions picture;
 };
@@ -42,7 +46,8 @@ class TryOn {
           volumes_(body::measure_volumes(room_.body().model().skeleton,
                                          room_.body().model().rest.positions,
                                          room_.body().model().parts)),
-          views_(render::views_from_names(options.views)) {
+          views_(render::views_from_names(options.views)),
+          map_(fit_map_from_name(options.fit_map)) {
         run_options_.measure_contact = !options_.report.empty();
         run_options_.seed = global.seed;
         run_options_.interrupted = [] { return host::interrupt_flag().load(); };
@@ -58,9 +63,11 @@ class TryOn {
         pipeline::TryOnRun run(source, room_.person(), run_options_);
         while (run.next()) {
         }
+        // Written first, so that it is there even if drawing fails.
+        if (!options_.fit.empty() || map_ != FitMapKind::none) report_fit();
         const auto context = render::make_offscreen_context();
-        Look look(*context, options_.picture.renderer(), room_.person(),
-                  options_.picture.colourway);
+        Look look(*context, options_.picture.renderer(), room_.person(), options_.picture.colourway,
+                  map_);
         look.update();
         imaging::save_image(draw(look, bounds_now(room_.person())), options_.out);
         finish(run);
@@ -77,8 +84,8 @@ class TryOn {
         TrackFile track(options_.out);
         LookCache cache(options_.cache);
         const auto context = render::make_offscreen_context();
-        Look look(*context, options_.picture.renderer(), room_.person(),
-                  options_.picture.colourway);
+        Look look(*context, options_.picture.renderer(), room_.person(), options_.picture.colourway,
+                  map_);
         RunProgress progress;
         std::unique_ptr<StageBox> stage;
         while (run.next()) {
@@ -107,14 +114,23 @@ class TryOn {
             look.draw(view, box);
             pictures.push_back(look.renderer().read());
         }
+        if (map_ != FitMapKind::none)
+            pictures.push_back(fit_legend(map_, look.renderer().height(), fit_ ? &*fit_ : nullptr));
         return side_by_side(pictures);
+    }
+
+    void report_fit() {
+        fit_ = pipeline::fit_of(room_.person());
+        for (const garment::FitFailure& failure : fit_->failures)
+            log::warning(failure.text);
+        if (!options_.fit.empty()) garment::write_fit(*fit_, options_.fit);
     }
 
     void finish(pipeline::TryOnRun& run) {
         for (const std::string& choice : room_.choices())
             log::info(choice);
         for (const std::string& fault : room_.person().faults())
-            log::warning(fault);
+            if (!fit_) log::warning(fault);
         if (!options_.glb.empty()) save_look(room_.person(), options_.glb);
         put_out_report(run.report(), room_, options_.report);
     }
@@ -123,6 +139,8 @@ class TryOn {
     FittingRoom room_;
     body::BodyVolumes volumes_;
     std::vector<render::View> views_;
+    FitMapKind map_;
+    std::optional<garment::FitReport> fit_;
     pipeline::RunOptions run_options_;
 };
 
@@ -134,7 +152,11 @@ void try_on(const TryOnOptions& options, const GlobalOptions& global) {
                          "': a still is written as .png (with --animation: a folder)");
     if (options.animation.empty() && !options.cache.empty())
         throw UsageError("tryon --cache keeps the frames of an --animation; there is none");
+    if (!options.animation.empty() && !options.fit.empty())
+        throw UsageError("tryon --fit tells how clothes fit that have come to rest; leave "
+                         "--animation out, and give a --pose if it is another than the usual one");
     // What is wrong with the call is said before anything is loaded.
+    (void)fit_map_from_name(options.fit_map);
     (void)render::views_from_names(options.views);
     (void)options.picture.renderer();
     host::catch_interrupts();
@@ -179,6 +201,12 @@ void add_tryon_commands(CLI::App& app, const GlobalOptions& global) {
         ->type_name("DIR");
     command->add_option("--report", options->report, "File for the figures of the run, as JSON")
         ->type_name("FILE");
+    command->add_option("--fit", options->fit, "File that says how it fits, as JSON")
+        ->type_name("fit.json");
+    command
+        ->add_option("--fit-map", options->fit_map,
+                     "Colours the garments by the room they leave or by how they are stretched")
+        ->type_name("ease|strain");
     options->picture.add_to(*command);
     command->footer("Example: toile tryon --body woman --garment t-shirt,skirt --views front,back "
                     "--out look.png");

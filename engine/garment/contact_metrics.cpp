@@ -141,6 +141,8 @@ ContactFigures ContactMetrics::measure(std::span<const Vec3f> body,
     for (const Vec3f& p : cloth_) {
         count_deep(p, figures);
     }
+    figures.vertices = figures.samples;
+    figures.deep_vertices = figures.deep;
     for (const Triangle& t : cloth_triangles_) {
         count_deep((cloth_[t[0]] + cloth_[t[1]] + cloth_[t[2]]) / 3.0f, figures);
     }

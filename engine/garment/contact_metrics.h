@@ -26,8 +26,10 @@ struct ContactFigures {
     std::size_t samples = 0; ///< garment vertices and triangle centres
     std::size_t deep = 0;
     std::size_t deep_apart = 0;
-    float deepest_m = 0.0f;  ///< of the samples not apart, not negative
-    std::size_t covered = 0; ///< body vertices
+    std::size_t vertices = 0;      ///< of the samples
+    std::size_t deep_vertices = 0; ///< of `deep`
+    float deepest_m = 0.0f;        ///< of the samples not apart, not negative
+    std::size_t covered = 0;       ///< body vertices
     std::size_t visible = 0;
     std::size_t visible_apart = 0;
 

@@ -105,4 +105,31 @@ void SurfaceEmbedding::evaluate(std::size_t part, std::span<const Vec3f> simulat
     }
 }
 
+void SurfaceEmbedding::spread(std::size_t part, std::span<const float> simulation_values,
+                              std::span<float> values) const noexcept {
+    const Part& p = parts_[part];
+    for (std::size_t i = 0; i < p.welded.size(); ++i) {
+        const EmbeddedVertex& v = p.vertices[p.welded[i]];
+        const Triangle& t = simulation_triangles_[v.triangle];
+        values[i] = v.barycentric[0] * simulation_values[t[0]] +
+                    v.barycentric[1] * simulation_values[t[1]] +
+                    v.barycentric[2] * simulation_values[t[2]];
+    }
+}
+
+std::vector<Triangle> SurfaceEmbedding::uncovered(std::size_t part,
+                                                  std::span<const Triangle> render_triangles,
+                                                  std::span<const std::uint8_t> hidden) const {
+    const Part& p = parts_[part];
+    std::vector<Triangle> out;
+    for (const Triangle& t : render_triangles) {
+        const bool covered =
+            !hidden.empty() && std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
+                return hidden[p.vertices[p.welded[v]].triangle] != 0;
+            });
+        if (!covered) out.push_back(t);
+    }
+    return out;
+}
+
 } // namespace toile::garment

@@ -49,6 +49,16 @@ class SurfaceEmbedding {
                   std::span<const Vec3f> simulation_normals, Scratch& scratch,
                   std::span<Vec3f> positions, std::span<Vec3f> normals) const noexcept;
 
+    /// A quantity of the simulation vertices (nv) at the render vertices (nr) of one part.
+    void spread(std::size_t part, std::span<const float> simulation_values,
+                std::span<float> values) const noexcept;
+
+    /// Triangles of one part that hang on simulation triangles which are not `hidden` (nf, 1 or 0)
+    /// with at least one corner; all of them when `hidden` is empty. (nt) into the render vertices.
+    [[nodiscard]] std::vector<Triangle> uncovered(std::size_t part,
+                                                  std::span<const Triangle> render_triangles,
+                                                  std::span<const std::uint8_t> hidden) const;
+
   private:
     std::vector<Triangle> simulation_triangles_;
     std::vector<Part> parts_;

@@ -235,6 +235,38 @@ void read_lists(JsonObject& root, Manifest& m, Faults& faults) {
     refuse_equal_names(m.variants, root, "variants", faults);
 }
 
+EaseClass read_ease_class(const std::string& name, const JsonObject& object,
+                          const std::string& key) {
+    const auto known = ease_class_from_name(name);
+    if (!known)
+        refuse(FaultCode::value, object, key,
+               "'" + name +
+                   "' is no ease class; there are stretch, fitted, semi_fitted, loose, very_loose");
+    return *known;
+}
+
+// One class for all of the garment, or an object of regions.
+EaseIntent read_ease_intent(JsonObject& root) {
+    EaseIntent out;
+    if (root.any("ease_class").is_string()) {
+        out.all = read_ease_class(root.text("ease_class"), root, "ease_class");
+        return out;
+    }
+    JsonObject regions = root.object("ease_class");
+    if (regions.keys().empty())
+        refuse(FaultCode::value, root, "ease_class", "names no region; leave it out instead");
+    for (const std::string& key : regions.keys()) {
+        const auto region = fit_region_from_name(key);
+        if (!region)
+            refuse(FaultCode::value, regions, key,
+                   "is no region; there are chest, waist, hip, upper_arm, forearm, thigh, knee, "
+                   "calf");
+        out.regions[*region] = read_ease_class(regions.text(key), regions, key);
+    }
+    regions.finish();
+    return out;
+}
+
 void read_identity(JsonObject& root, Manifest& m, Faults& faults) {
     const auto with = [&](auto&& read) { attempt(faults, FaultCode::json, read); };
     with([&] { m.id = read_identifier(root, "id"); });
@@ -250,6 +282,7 @@ void read_identity(JsonObject& root, Manifest& m, Faults& faults) {
     with([&] { m.layer = static_cast<std::uint32_t>(root.integer("layer", 0, 15)); });
     if (root.has("made_on")) with([&] { m.made_on = read_identifier(root, "made_on"); });
     if (root.has("ease")) with([&] { m.ease_m = read_quantity(root, kEase); });
+    if (root.has("ease_class")) with([&] { m.ease_class = read_ease_intent(root); });
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "body/body_model.h"
+#include "garment/ease_class.h"
 #include "garment/fault.h"
 
 #include <map>
@@ -65,6 +66,7 @@ struct Manifest {
     std::uint32_t layer = 1;
     std::string made_on; ///< avatar id of sizes that name none, or "" when unknown
     double ease_m = 0.004;
+    EaseIntent ease_class; ///< how much room the design is meant to give; empty: not said
     Fabric fabric;
     std::vector<SizeEntry> sizes;
     std::vector<PinGroup> pins;

@@ -75,6 +75,9 @@ std::string write_manifest(const Manifest& m) {
               {"kind", m.kind},    {"layer", m.layer}};
     if (!m.made_on.empty()) j["made_on"] = m.made_on;
     j["ease"] = rounded(m.ease_m);
+    if (m.ease_class.all != EaseClass::invalid) j["ease_class"] = name_of(m.ease_class.all);
+    for (const auto& [region, ease_class] : m.ease_class.regions)
+        j["ease_class"][std::string(name_of(region))] = name_of(ease_class);
     j["fabric"]["name"] = m.fabric.name;
     for (const auto& [quantity, field] : kFabricKeys)
         j["fabric"][quantity.key] = rounded(m.fabric.*field / quantity.si_per_unit);

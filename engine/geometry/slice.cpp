@@ -15,6 +15,7 @@ struct Crossing {
 // Part of a curve within one triangle, from one crossed edge to another.
 struct Segment {
     Crossing start, end;
+    std::uint32_t triangle = 0;
     bool operator<(const Segment& other) const { return start < other.start; }
 };
 
@@ -31,8 +32,8 @@ class Slicer {
         const Vec3d normal = plane.normal.cast<double>();
         for (const Vec3f& p : positions)
             heights_.push_back(normal.dot(p.cast<double>()) - static_cast<double>(plane.offset));
-        for (const Triangle& t : triangles)
-            add_segment(t);
+        for (std::uint32_t i = 0; i < triangles.size(); ++i)
+            add_segment(triangles[i], i);
         std::sort(segments_.begin(), segments_.end());
         used_.assign(segments_.size(), 0);
     }
@@ -58,8 +59,9 @@ class Slicer {
     // Neighbours run through their common edge in opposite directions, so that starting where a
     // triangle's outline falls through the plane and ending where it rises makes segments meet
     // head to tail.
-    void add_segment(const Triangle& t) {
+    void add_segment(const Triangle& t, std::uint32_t triangle) {
         Segment segment{};
+        segment.triangle = triangle;
         int crossed = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = t[k];
@@ -86,6 +88,7 @@ class Slicer {
         for (;;) {
             used_[i] = 1;
             loop.points.push_back(point(segments_[i].start));
+            loop.triangles.push_back(segments_[i].triangle);
             const Crossing end = segments_[i].end;
             if (end == begin) {
                 loop.closed = true;

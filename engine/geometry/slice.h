@@ -23,6 +23,9 @@ struct Plane {
 struct Loop {
     std::vector<Vec3f> points; ///< in order, the first is not repeated; metres
     bool closed = false;       ///< false: it begins and ends on the surface's border
+    /// Of a cut: the triangle that each step from a point to the next runs in, the last step of a
+    /// closed curve back to the first point included; empty for curves that are no cut.
+    std::vector<std::uint32_t> triangles = {};
 
     /// Along the curve, back to the start when closed; m.
     [[nodiscard]] double length() const;

@@ -43,6 +43,10 @@ class BoundaryGarment {
     [[nodiscard]] const toile_garment_package& abi() const { return abi_; }
     [[nodiscard]] const garment::GarmentPackage& package() const { return *package_; }
     [[nodiscard]] const garment::GarmentSize& size() const { return size_; }
+    /// ISO names to metres of the body that it was made on; null when that is not known.
+    [[nodiscard]] const std::map<std::string, double>* made_on_measurements() const {
+        return made_on_ ? &made_on_->model().measurements : nullptr;
+    }
 
   private:
     std::shared_ptr<const garment::GarmentPackage> package_;

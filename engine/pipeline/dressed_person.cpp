@@ -1,5 +1,8 @@
 #include "pipeline/dressed_person.h"
 
+#include "core/error.h"
+#include "garment/hidden.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +15,10 @@ DressedPerson::DressedPerson(host::Registry& registry, host::Services& services,
     : body_(std::move(body)), options_(options),
       skinner_(registry.find(TOILE_SKINNING), services, *body_, options_.limits, job),
       before_(std::make_unique<PosedBody>(*body_)), after_(std::make_unique<PosedBody>(*body_)) {
+    if (garments.size() > kMostGarments)
+        throw Error("at most " + std::to_string(kMostGarments) +
+                    " garments are worn together, not " + std::to_string(garments.size()) +
+                    "; leave out " + garments[kMostGarments]->package().manifest.id);
     for (auto& garment : garments)
         garments_.emplace_back(registry.find(TOILE_GARMENT), services, *body_, std::move(garment),
                                options_.limits, job);
@@ -19,6 +26,7 @@ DressedPerson::DressedPerson(host::Registry& registry, host::Services& services,
     skinner_.pose(*after_);
     if (!garments_.empty()) make_cloth_world(registry, services, job);
     order_layers();
+    hide_covered();
 }
 
 DressedPerson::~DressedPerson() = default;
@@ -130,6 +138,24 @@ void DressedPerson::order_layers() {
                 {inner, outer,
                  garment::LayerOffset({garments_[inner].bound, garments_[inner].triangles()},
                                       {garments_[outer].bound, garments_[outer].triangles()})});
+}
+
+void DressedPerson::hide_covered() {
+    if (garments_.size() < 2) return;
+    show();
+    std::vector<Vec3f> normals;
+    for (std::size_t i = 0; i + 1 < garments_.size(); ++i) {
+        std::vector<garment::ClothSurface> over;
+        for (std::size_t j = i + 1; j < garments_.size(); ++j)
+            if (!garments_[j].see_through())
+                over.push_back({garments_[j].shown, garments_[j].triangles()});
+        WornGarment& inner = garments_[i];
+        normals.assign(inner.shown.size(), Vec3f::UnitY());
+        geometry::vertex_normals(inner.shown, inner.triangles(), normals);
+        inner.hidden =
+            garment::hidden_triangles({inner.shown, inner.triangles()}, normals, over,
+                                      {after_->positions, body_->model().rest.triangles});
+    }
 }
 
 void DressedPerson::show() noexcept {

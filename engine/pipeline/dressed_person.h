@@ -21,11 +21,16 @@ struct DressingOptions {
     double start_settle_s = 0.5;   ///< there, before the first frame counts
 };
 
+/// As many garments as are worn together.
+inline constexpr std::size_t kMostGarments = 4;
+
 /// Not movable. Built on a worker; `start` and `step` belong to the frame thread.
 class DressedPerson {
   public:
-    /// Finds the default plugins, binds every garment and fills the cloth world.
-    /// \throw Error naming the plugin or garment that does not work
+    /// Finds the default plugins, binds every garment and fills the cloth world. `garments` go from
+    /// the innermost to the outermost; what others hide of one is not drawn.
+    /// \throw Error naming the plugin or garment that does not work, or when there are more than
+    /// `kMostGarments`
     DressedPerson(host::Registry& registry, host::Services& services,
                   std::shared_ptr<const BoundaryBody> body,
                   std::vector<std::shared_ptr<const BoundaryGarment>> garments,
@@ -51,6 +56,7 @@ class DressedPerson {
     void advance(const JointArray& joints, double dt_s, StageClock& clock) noexcept;
     void step_cloth(double dt_s) noexcept;
     void order_layers();
+    void hide_covered();
     void show() noexcept;
 
     std::shared_ptr<const BoundaryBody> body_;

@@ -73,6 +73,19 @@ void WornGarment::update_targets(const toile_body_state& state,
                     body::VectorRows(std::span(targets)), {});
 }
 
+bool WornGarment::see_through() const {
+    const assets::Scene& scene = garment_->size().render;
+    const auto clear = [](const assets::Texture& texture) {
+        const auto& pixels = texture.image.pixels;
+        for (std::size_t i = 3; i < pixels.size(); i += 4)
+            if (pixels[i] < 255) return true;
+        return false;
+    };
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [](const assets::Material& m) { return m.base_color.w() < 1.0f; }) ||
+           std::any_of(scene.textures.begin(), scene.textures.end(), clear);
+}
+
 void WornGarment::begin_showing() noexcept {
     std::copy(positions.begin(), positions.end(), shown.begin());
 }

@@ -35,6 +35,18 @@ class WornGarment {
     /// Render meshes for `shown`. [frame]
     void update_surfaces() noexcept;
 
+    /// A quantity of the simulation vertices (nv) at the vertices (nr) of a surface. [frame]
+    void on_surface(std::size_t surface, std::span<const float> values,
+                    std::span<float> out) const noexcept {
+        embedding_.spread(surface, values, out);
+    }
+    /// Triangles of a surface that may be seen: those that hang on `hidden` cloth are left out.
+    [[nodiscard]] std::vector<Triangle> drawn_triangles(std::size_t surface) const {
+        return embedding_.uncovered(surface, surfaces[surface].primitive->triangles, hidden);
+    }
+    /// Some of its materials or their textures let light through.
+    [[nodiscard]] bool see_through() const;
+
     [[nodiscard]] const BoundaryGarment& garment() const noexcept { return *garment_; }
     [[nodiscard]] const std::vector<Triangle>& triangles() const {
         return garment_->size().simulation.triangles;
@@ -47,6 +59,8 @@ class WornGarment {
     std::vector<Vec3f> positions; ///< (nv) the cloth
     std::vector<Vec3f> normals;   ///< (nv)
     std::vector<Vec3f> shown;     ///< (nv) the cloth as drawn, clear of the layers below
+    /// (nf) 1: never seen beneath the garments over it; or empty. Only drawing leaves it out.
+    std::vector<std::uint8_t> hidden;
 
     /// One drawable of the package, positions as worn; material as in its scene.
     struct Surface {

@@ -536,6 +536,9 @@ Status Renderer::update_mesh(MeshId mesh, std::span<const Vec3f> positions,
                              std::span<const Vec3f> normals) noexcept {
     return impl_->resources_.update_mesh(mesh, positions, normals);
 }
+Status Renderer::update_texcoords(MeshId mesh, std::span<const Vec2f> texcoords) noexcept {
+    return impl_->resources_.update_texcoords(mesh, texcoords);
+}
 Status Renderer::update_texture(TextureId texture, const imaging::Image& image) noexcept {
     return impl_->resources_.update_texture(texture, image);
 }

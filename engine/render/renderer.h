@@ -18,7 +18,8 @@ struct RendererOptions {
 };
 
 /// All calls on the context's thread. Set-up calls throw; the calls of a frame (`update_mesh`,
-/// `update_texture`, `update_depth`, `draw`, `read`) do not allocate after the first.
+/// `update_texcoords`, `update_texture`, `update_depth`, `draw`, `read`) do not allocate after the
+/// first.
 class Renderer {
   public:
     /// `context` must outlive this. \throw Error when the picture has no size, is too large, or the
@@ -48,6 +49,8 @@ class Renderer {
     /// was.
     [[nodiscard]] Status update_mesh(MeshId mesh, std::span<const Vec3f> positions,
                                      std::span<const Vec3f> normals = {}) noexcept;
+    /// New texture coordinates (nv) of a mesh that was added with some. [frame]
+    [[nodiscard]] Status update_texcoords(MeshId mesh, std::span<const Vec2f> texcoords) noexcept;
     /// New content of the same size. [frame]
     [[nodiscard]] Status update_texture(TextureId texture, const imaging::Image& image) noexcept;
     [[nodiscard]] Status update_depth(TextureId texture, const imaging::DepthImage& depth) noexcept;

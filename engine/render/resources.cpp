@@ -256,6 +256,20 @@ Status Resources::update_mesh(MeshId id, std::span<const Vec3f> positions,
     return Status::ok;
 }
 
+Status Resources::update_texcoords(MeshId id, std::span<const Vec2f> texcoords) noexcept {
+    const std::size_t i = index_of(id);
+    if (i >= meshes_.size() || meshes_[i] == nullptr) return Status::unknown;
+    const GpuMesh& m = *meshes_[i];
+    if (m.texcoords.id() == 0 || texcoords.size() != m.staging.size()) return Status::wrong_count;
+    if (!std::all_of(texcoords.begin(), texcoords.end(),
+                     [](const Vec2f& t) { return t.allFinite(); }))
+        return Status::not_finite;
+    gl_.BindBuffer(GL_ARRAY_BUFFER, m.texcoords.id());
+    gl_.BufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(texcoords.size_bytes()),
+                      texcoords.data());
+    return Status::ok;
+}
+
 void Resources::upload(GpuMesh& m) noexcept {
     const auto put = [&](const GlObject& buffer, const std::vector<Vec3f>& surface) {
         const Vec3f* data = surface.data();

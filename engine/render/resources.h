@@ -49,6 +49,7 @@ class Resources {
 
     Status update_mesh(MeshId mesh, std::span<const Vec3f> positions,
                        std::span<const Vec3f> normals) noexcept;
+    Status update_texcoords(MeshId mesh, std::span<const Vec2f> texcoords) noexcept;
     Status update_texture(TextureId texture, const imaging::Image& image) noexcept;
     Status update_depth(TextureId texture, const imaging::DepthImage& depth) noexcept;
 

@@ -2,7 +2,9 @@
 // over: the stock plugins with a dressed avatar.
 #include "allocations/allocation_counter.h"
 #include "body/motion.h"
+#include "garment/cloth_strain.h"
 #include "garment/size_choice.h"
+#include "garment/skin_gap.h"
 #include "pipeline/motion_source.h"
 #include "pipeline/try_on_run.h"
 
@@ -125,6 +127,30 @@ TEST_F(FramePath, TheLiveClockDropsFramesWithoutAllocating) {
     RunOptions options;
     options.realtime = true;
     expect_none(source, 10, std::move(options));
+}
+
+TEST_F(FramePath, TheFitMapsNumbersAreMeasuredWithoutAllocating) {
+    MotionSource source = walk(30.0);
+    TryOnRun run(source, *room_->person, {});
+    ASSERT_TRUE(run.next());
+    const auto& body = room_->body->model().rest;
+    for (const WornGarment& worn : room_->person->garments()) {
+        const auto& size = worn.garment().size();
+        const auto& posed = room_->person->posed();
+        garment::SkinGap gap(body.triangles, body.positions.size(), worn.positions.size());
+        garment::ClothStrain strain(worn.triangles(), size.material_coords, worn.positions.size());
+        std::vector<float> spread(worn.surfaces[0].positions.size());
+        gap.find({posed.positions, posed.normals}, worn.positions);
+        for (int i = 0; i < 3; ++i) {
+            ASSERT_TRUE(run.next());
+            test::AllocationCount count;
+            gap.follow({posed.positions, posed.normals}, worn.positions);
+            strain.measure(worn.positions);
+            strain.measure_pressure(worn.positions, worn.normals, {300.0, 200.0});
+            worn.on_surface(0, gap.gaps(), spread);
+            EXPECT_EQ(count.stop(), 0u) << test::AllocationCount::first();
+        }
+    }
 }
 
 } // namespace

@@ -184,6 +184,16 @@ std::vector<Case> manifest_cases() {
          [](Animal& a) { a.json([](Json& j) { j["fabric"]["thickness"] = 0.0005; }); }},
         {"ease_in_millimetres", value, "4 mm is written 0.004",
          [](Animal& a) { a.json([](Json& j) { j["ease"] = 4; }); }},
+        {"ease_class_unknown", value, "/ease_class: 'snug' is no ease class",
+         [](Animal& a) { a.json([](Json& j) { j["ease_class"] = "snug"; }); }},
+        {"ease_class_of_no_region", value, "/ease_class/nose: is no region",
+         [](Animal& a) { a.json([](Json& j) {
+                             j["ease_class"] = {{"nose", "loose"}};
+                         }); }},
+        {"ease_class_of_nothing", value, "/ease_class: names no region",
+         [](Animal& a) { a.json([](Json& j) { j["ease_class"] = Json::object(); }); }},
+        {"ease_class_a_number", json,
+         "/ease_class: ", [](Animal& a) { a.json([](Json& j) { j["ease_class"] = 4.5; }); }},
         {"chart_in_centimetres", value, "88 cm is written 0.88",
          [](Animal& a) {
              a.json([](Json& j) { j["sizes"][0]["chart"]["hip_girth"] = {{"body", 88}}; });

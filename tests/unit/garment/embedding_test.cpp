@@ -2,6 +2,7 @@
 
 #include "support/garments.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace toile::garment {
@@ -59,6 +60,41 @@ TEST(Embedding, KeepsItsSideWhenTheClothWidens) {
     const Posed posed = evaluate(embedding, size, wide);
     for (const Vec3f& p : posed.positions) // the offset keeps its 1 mm
         EXPECT_NEAR(std::hypot(p.x(), p.z()), 0.401f, 2e-4f);
+}
+
+TEST(Embedding, SpreadsALinearQuantityExactly) {
+    const GarmentSize size = test::tube_size("M", 0.2f, 0.5f, 1.0f);
+    const SurfaceEmbedding embedding(size);
+    std::vector<float> height, spread(embedding.parts()[0].welded.size());
+    for (const Vec3f& p : size.simulation.positions)
+        height.push_back(p.y());
+    embedding.spread(0, height, spread);
+    const auto& rest = size.render.meshes[0].primitives[0];
+    for (std::size_t i = 0; i < spread.size(); ++i)
+        EXPECT_NEAR(spread[i], rest.positions[i].y(), 1e-5f);
+}
+
+TEST(Embedding, LeavesOutWhatHangsOnHiddenTrianglesOnly) {
+    const GarmentSize size = test::tube_size("M", 0.2f, 0.5f, 1.0f);
+    const SurfaceEmbedding embedding(size);
+    const auto& rest = size.render.meshes[0].primitives[0];
+    EXPECT_EQ(embedding.uncovered(0, rest.triangles, {}).size(), rest.triangles.size());
+    std::vector<std::uint8_t> hidden;
+    for (const Triangle& t : size.simulation.triangles) // all of the upper half
+        hidden.push_back(std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
+            return size.simulation.positions[v].y() > 0.74f;
+        }));
+    const auto drawn = embedding.uncovered(0, rest.triangles, hidden);
+    EXPECT_LT(drawn.size(), rest.triangles.size());
+    EXPECT_GE(drawn.size(), rest.triangles.size() / 2);
+    for (const Triangle& t : drawn) {
+        float low = 2.0f;
+        for (const std::uint32_t v : t)
+            low = std::min(low, rest.positions[v].y());
+        EXPECT_LT(low, 0.76f);
+    }
+    std::fill(hidden.begin(), hidden.end(), std::uint8_t{1});
+    EXPECT_TRUE(embedding.uncovered(0, rest.triangles, hidden).empty());
 }
 
 TEST(Embedding, SeamsStayClosed) {

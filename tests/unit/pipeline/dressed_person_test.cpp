@@ -10,8 +10,10 @@
 #include "sdk/plugin.h"
 #include "sdk/skinning.h"
 #include "sdk/views.h"
+#include "support/garments.h"
 #include "support/meshes.h"
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <limits>
@@ -175,6 +177,17 @@ std::shared_ptr<const BoundaryGarment> sheet() {
     return std::make_shared<const BoundaryGarment>(package, package->sizes[0], nullptr);
 }
 
+// A tube around it; `alpha` of its material.
+std::shared_ptr<const BoundaryGarment> tube(const std::string& id, float radius, float low,
+                                            float high, float alpha = 1.0f) {
+    auto package = std::make_shared<garment::GarmentPackage>();
+    package->manifest.id = id;
+    package->sizes.push_back(test::tube_size("M", radius, low, high, 24, 30));
+    for (assets::Material& material : package->sizes[0].render.materials)
+        material.base_color.w() = alpha;
+    return std::make_shared<const BoundaryGarment>(package, package->sizes[0], nullptr);
+}
+
 BodyFrame frame_at(float x, double time_s) {
     BodyFrame frame;
     frame.timestamp_ns = static_cast<std::int64_t>(time_s * 1e9);
@@ -196,20 +209,18 @@ class DressedPersonTest : public testing::Test {
             registry_.add(*entry, manifest_of(*entry));
     }
 
-    DressedPerson& person() {
-        if (!person_) {
-            DressingOptions options;
-            options.limits = host::sized<toile_limits>();
-            options.limits.max_people = 1;
-            options.limits.max_vertices = 1000;
-            options.limits.max_triangles = 1000;
-            options.limits.thread_count = 1;
-            std::vector<std::shared_ptr<const BoundaryGarment>> garments = {sheet()};
-            person_ = std::make_unique<DressedPerson>(registry_, services_, box_body(),
-                                                      std::move(garments), options, job_);
-        }
+    DressedPerson& dress(std::vector<std::shared_ptr<const BoundaryGarment>> garments) {
+        DressingOptions options;
+        options.limits = host::sized<toile_limits>();
+        options.limits.max_people = 1;
+        options.limits.max_vertices = 1000;
+        options.limits.max_triangles = 1000;
+        options.limits.thread_count = 1;
+        person_ = std::make_unique<DressedPerson>(registry_, services_, box_body(),
+                                                  std::move(garments), options, job_);
         return *person_;
     }
+    DressedPerson& person() { return person_ ? *person_ : dress({sheet()}); }
     void start_at_rest() {
         person().start(frame_at(0.0f, 0.0), clock_);
         script.cloth_steps.clear();
@@ -224,6 +235,42 @@ class DressedPersonTest : public testing::Test {
     StageClock clock_;
     std::unique_ptr<DressedPerson> person_;
 };
+
+TEST_F(DressedPersonTest, WhatOthersCoverIsNotDrawnButStillThere) {
+    DressedPerson& person =
+        dress({tube("shirt", 0.26f, 0.5f, 1.3f), tube("coat", 0.27f, 0.7f, 1.5f)});
+    const WornGarment& shirt = person.garments()[0];
+    const auto hidden = std::count(shirt.hidden.begin(), shirt.hidden.end(), 1);
+    EXPECT_GT(hidden, 100);
+    EXPECT_LT(hidden, static_cast<std::ptrdiff_t>(shirt.hidden.size()));
+    EXPECT_LT(shirt.drawn_triangles(0).size(), shirt.surfaces[0].primitive->triangles.size());
+    EXPECT_TRUE(person.garments()[1].hidden.empty()) << "nothing is worn over the coat";
+    EXPECT_EQ(person.garments()[1].drawn_triangles(0).size(),
+              person.garments()[1].surfaces[0].primitive->triangles.size());
+    EXPECT_EQ(shirt.positions.size(), shirt.garment().size().simulation.positions.size());
+}
+
+TEST_F(DressedPersonTest, BeneathClothThatLetsLightThroughAllIsDrawn) {
+    const auto lace = tube("lace", 0.27f, 0.3f, 1.5f, 0.4f);
+    const DressedPerson& person = dress({tube("shirt", 0.26f, 0.5f, 1.3f), lace});
+    const auto& hidden = person.garments()[0].hidden;
+    EXPECT_EQ(std::count(hidden.begin(), hidden.end(), 1), 0);
+}
+
+TEST_F(DressedPersonTest, AFifthGarmentIsRefused) {
+    std::vector<std::shared_ptr<const BoundaryGarment>> garments;
+    for (const char* id : {"leggings", "skirt", "shirt", "coat", "cape"})
+        garments.push_back(tube(id, 0.26f, 0.5f, 1.3f));
+    const std::vector<std::shared_ptr<const BoundaryGarment>> four(garments.begin(),
+                                                                   garments.end() - 1);
+    EXPECT_EQ(dress(four).garments().size(), 4u);
+    try {
+        dress(garments);
+        FAIL() << "five garments were put on";
+    } catch (const Error& e) {
+        EXPECT_THAT(e.what(), testing::AllOf(HasSubstr("at most 4"), HasSubstr("cape")));
+    }
+}
 
 TEST_F(DressedPersonTest, AFramePassesThroughEveryStage) {
     start_at_rest();

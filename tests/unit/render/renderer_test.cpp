@@ -118,6 +118,42 @@ TEST_F(RendererTest, LambertsLawUnderOneLight) {
     EXPECT_EQ(pixel(draw(scene), 48, 48), (std::array{0, 0, 0})) << "light out of nothing";
 }
 
+TEST_F(RendererTest, NewTextureCoordinatesShowAnotherPlaceOfTheTexture) {
+    // Dark on the left half of the texture, bright on the right.
+    imaging::Image halves{16, 4, {}};
+    for (int i = 0; i < 16 * 4; ++i) {
+        const std::uint8_t value = i % 16 < 8 ? 30 : 220;
+        halves.pixels.insert(halves.pixels.end(), {value, value, value, 255});
+    }
+    const test::MeshData square = test::square(Vec3f(0, 1, 0), 1.0f);
+    const std::vector<Vec2f> dark(4, Vec2f(0.25f, 0.5f)), bright(4, Vec2f(0.75f, 0.5f));
+    MeshDescription description = square.description();
+    description.texcoords = dark;
+    Material material;
+    material.base_color_texture = renderer_.add_texture(halves, false);
+    Scene scene;
+    scene.camera = camera_at(Vec3f(0, 1, 0), 2.0f);
+    scene.lighting = only_key(Vec3f(0, 0, 1));
+    Instance instance;
+    instance.mesh = renderer_.add_mesh(description);
+    instance.material = renderer_.add_material(material);
+    scene.instances = {instance};
+    const int before = pixel(draw(scene), 48, 48)[1];
+    EXPECT_EQ(renderer_.update_texcoords(instance.mesh, bright), Status::ok);
+    EXPECT_GT(pixel(draw(scene), 48, 48)[1], before + 100);
+    EXPECT_EQ(renderer_.update_texcoords(instance.mesh, dark), Status::ok);
+    EXPECT_EQ(pixel(draw(scene), 48, 48)[1], before);
+
+    std::vector<Vec2f> broken = bright;
+    broken[2].y() = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(renderer_.update_texcoords(instance.mesh, broken), Status::not_finite);
+    EXPECT_EQ(renderer_.update_texcoords(instance.mesh, std::span(bright).first(3)),
+              Status::wrong_count);
+    EXPECT_EQ(renderer_.update_texcoords(MeshId::none, bright), Status::unknown);
+    const MeshId plain = renderer_.add_mesh(square.description());
+    EXPECT_EQ(renderer_.update_texcoords(plain, bright), Status::wrong_count) << "it has none";
+}
+
 TEST_F(RendererTest, TheSideTowardsTheLightIsBright) {
     Scene scene = ball();
     scene.lighting = only_key(Vec3f(-1, 0, 0.3f));
