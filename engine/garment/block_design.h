@@ -30,6 +30,7 @@ struct Design {
     std::optional<double> girth_ease_m; ///< metres beyond chest or hip
     Fabric fabric;
     double ease_m = 0.006;
+    EaseIntent ease_class; ///< empty: not said
     std::uint32_t layer = 0;
     DrapeOptions drape;
     std::vector<DesignPart> parts;

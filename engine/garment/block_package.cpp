@@ -175,6 +175,7 @@ Manifest make_manifest(const Design& design) {
     m.kind = design.kind;
     m.layer = design.layer;
     m.ease_m = design.ease_m;
+    m.ease_class = design.ease_class;
     m.fabric = design.fabric;
     m.body_mask = design.body_mask;
     for (const Colourway& colour : design.colours) {

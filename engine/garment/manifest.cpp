@@ -245,7 +245,26 @@ EaseClass read_ease_class(const std::string& name, const JsonObject& object,
     return *known;
 }
 
-// One class for all of the garment, or an object of regions.
+void read_identity(JsonObject& root, Manifest& m, Faults& faults) {
+    const auto with = [&](auto&& read) { attempt(faults, FaultCode::json, read); };
+    with([&] { m.id = read_identifier(root, "id"); });
+    with([&] {
+        m.version = root.text("version");
+        if (!is_version(m.version))
+            refuse(FaultCode::value, root, "version", "must look like 1.0.0");
+    });
+    with([&] { m.name = read_words(root, "name"); });
+    with([&] { m.maker = read_words(root, "maker"); });
+    with([&] { m.licence = read_words(root, "licence"); });
+    with([&] { m.kind = read_identifier(root, "kind"); });
+    with([&] { m.layer = static_cast<std::uint32_t>(root.integer("layer", 0, 15)); });
+    if (root.has("made_on")) with([&] { m.made_on = read_identifier(root, "made_on"); });
+    if (root.has("ease")) with([&] { m.ease_m = read_quantity(root, kEase); });
+    if (root.has("ease_class")) with([&] { m.ease_class = read_ease_intent(root); });
+}
+
+} // namespace
+
 EaseIntent read_ease_intent(JsonObject& root) {
     EaseIntent out;
     if (root.any("ease_class").is_string()) {
@@ -266,26 +285,6 @@ EaseIntent read_ease_intent(JsonObject& root) {
     regions.finish();
     return out;
 }
-
-void read_identity(JsonObject& root, Manifest& m, Faults& faults) {
-    const auto with = [&](auto&& read) { attempt(faults, FaultCode::json, read); };
-    with([&] { m.id = read_identifier(root, "id"); });
-    with([&] {
-        m.version = root.text("version");
-        if (!is_version(m.version))
-            refuse(FaultCode::value, root, "version", "must look like 1.0.0");
-    });
-    with([&] { m.name = read_words(root, "name"); });
-    with([&] { m.maker = read_words(root, "maker"); });
-    with([&] { m.licence = read_words(root, "licence"); });
-    with([&] { m.kind = read_identifier(root, "kind"); });
-    with([&] { m.layer = static_cast<std::uint32_t>(root.integer("layer", 0, 15)); });
-    if (root.has("made_on")) with([&] { m.made_on = read_identifier(root, "made_on"); });
-    if (root.has("ease")) with([&] { m.ease_m = read_quantity(root, kEase); });
-    if (root.has("ease_class")) with([&] { m.ease_class = read_ease_intent(root); });
-}
-
-} // namespace
 
 std::string_view part_name(body::Part part) {
     return kPartNames.at(static_cast<std::size_t>(part));

@@ -1,6 +1,7 @@
 // Reads a JSON object key by key and goes on after a fault, so that all of them are reported.
 #pragma once
 
+#include "garment/manifest.h"
 #include "core/json.h"
 #include "garment/fault.h"
 
@@ -34,6 +35,10 @@ struct Quantity {
     double si_per_unit;
     const char* hint = ""; ///< "" or what a value out of range probably means
 };
+
+/// The object's "ease_class": one class for all of the garment, or an object of regions.
+/// \throw Error naming the place
+[[nodiscard]] EaseIntent read_ease_intent(JsonObject& root);
 
 /// True when `text` is letters a-z, digits and single - _ between, at most 64.
 [[nodiscard]] bool is_identifier(std::string_view text);

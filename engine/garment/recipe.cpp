@@ -1,6 +1,7 @@
 #include "garment/recipe.h"
 
 #include "core/json.h"
+#include "garment/manifest_reader.h"
 
 #include <algorithm>
 #include <array>
@@ -221,7 +222,7 @@ Recipe load_recipe(const std::filesystem::path& file) {
     read_source(root, file, recipe);
     recipe.sizes_on = root.text("sizes_on");
     recipe.fabric = root.text("fabric");
-    recipe.ease_class = root.text_or("ease_class", "");
+    if (root.has("ease_class")) recipe.ease_class = read_ease_intent(root);
     recipe.ease_m = root.number_or("ease", 0.0, 0.05, recipe.ease_m);
     recipe.edge_m = root.number_or("edge", 0.004, 0.05, recipe.edge_m);
     recipe.clearance_m = root.number_or("clearance", 0.001, 0.05, recipe.clearance_m);

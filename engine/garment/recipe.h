@@ -88,7 +88,7 @@ struct Recipe {
     std::filesystem::path pieces_file; ///< a DXF beside the recipe, or ""
     std::string sizes_on;              ///< "women", "men"
     std::string fabric;                ///< a name of fabric_table.h
-    std::string ease_class;
+    EaseIntent ease_class;
     double ease_m = 0.004;
     double edge_m = 0.016;
     double clearance_m = 0.008; ///< while draping

@@ -39,6 +39,7 @@ Design design_of(const Recipe& recipe, CutPieces cut) {
     }
     d.held_prefix = recipe.held_prefix;
     d.held_strengths.assign(recipe.held_strengths.begin(), recipe.held_strengths.end());
+    d.ease_class = recipe.ease_class;
     d.chart = recipe.chart;
     d.body_mask = recipe.body_mask;
     return d;

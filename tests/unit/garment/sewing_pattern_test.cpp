@@ -115,7 +115,7 @@ TEST(Recipe, NamesWhatIsWrong) {
     EXPECT_ERROR((void)load([](json& r) { r["parts"][0]["weave"] = "felt"; }),
                  "'felt' is none of jersey");
     EXPECT_ERROR((void)load([](json& r) {
-                     r["panels"][0]["border"] = {{"p0", "hem"}};
+                     r["panels"][0]["border"] = json::parse(R"([["p0", "hem"]])");
                  }),
                  "at least two corners");
 }
