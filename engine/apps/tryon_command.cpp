@@ -64,7 +64,10 @@ class TryOn {
         while (run.next()) {
         }
         // Written first, so that it is there even if drawing fails.
-        if (!options_.fit.empty() || map_ != FitMapKind::none) report_fit();
+        if (!options_.fit.empty())
+            report_fit();
+        else if (map_ != FitMapKind::none)
+            fit_for_legend();
         const auto context = render::make_offscreen_context();
         Look look(*context, options_.picture.renderer(), room_.person(), options_.picture.colourway,
                   map_);
@@ -124,6 +127,15 @@ class TryOn {
         for (const garment::FitFailure& failure : fit_->failures)
             log::warning(failure.text);
         if (!options_.fit.empty()) garment::write_fit(*fit_, options_.fit);
+    }
+
+    // A body without landmarks has no girths; its map can be drawn all the same.
+    void fit_for_legend() {
+        try {
+            report_fit();
+        } catch (const Error& e) {
+            log::warning(std::string("the legend has no girths: ") + e.what());
+        }
     }
 
     void finish(pipeline::TryOnRun& run) {

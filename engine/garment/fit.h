@@ -134,7 +134,7 @@ class FitAssessor {
     /// Borrows the model. \throw Error naming the landmark that the model lacks
     explicit FitAssessor(const WearerView& wearer);
 
-    /// Not for the per-frame path: some 0.2 s a garment. Failures go to `failures`.
+    /// Not for the per-frame path: some 0.1 s a garment. Failures go to `failures`.
     [[nodiscard]] GarmentFit assess(const WornView& worn, std::vector<FitFailure>& failures) const;
 
   private:

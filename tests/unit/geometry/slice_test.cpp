@@ -1,6 +1,7 @@
 #include "geometry/slice.h"
 
 #include "geometry/mesh.h"
+#include "geometry/nearest_surface.h"
 #include "support/meshes.h"
 
 #include <gtest/gtest.h>
@@ -64,6 +65,25 @@ TEST(Slice, LoopsRunCounterClockwiseSeenAgainstTheNormal) {
         for (std::size_t i = 0; i < points.size(); ++i)
             area += points[i].cross(points[(i + 1) % points.size()]);
         EXPECT_GT(area.dot(plane.normal), 1.0f);
+    }
+}
+
+TEST(Slice, EveryStepRunsInTheTriangleThatIsNamed) {
+    const TriangleMesh mesh = test::sphere(0.3f, 3);
+    const Plane plane = Plane::through(Vec3f(0.01f, 0.05f, 0.02f), Vec3f(0.2f, 1.0f, -0.3f));
+    for (const Loop& loop : slice(mesh.positions, mesh.triangles, plane)) {
+        ASSERT_TRUE(loop.closed);
+        ASSERT_EQ(loop.triangles.size(), loop.points.size());
+        for (std::size_t i = 0; i < loop.points.size(); ++i) {
+            const Vec3f middle =
+                0.5f * (loop.points[i] + loop.points[(i + 1) % loop.points.size()]);
+            const Triangle& t = mesh.triangles[loop.triangles[i]];
+            const TriangleMesh one = {
+                {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]},
+                {},
+                {{0, 1, 2}}};
+            EXPECT_LT(NearestSurface(one.positions, one.triangles).nearest(middle).distance, 1e-6f);
+        }
     }
 }
 
