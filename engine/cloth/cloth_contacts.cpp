@@ -136,6 +136,21 @@ std::uint32_t ClothContacts::nearest_other(std::span<const Vec4f> x,
     return best;
 }
 
+/// Is one triangle a near neighbour of the other in the cloth, and not folded back over it? Only
+/// then is what lies over the one over the other too.
+bool ClothContacts::same_sheet(std::span<const Vec4f> x, std::uint32_t first,
+                               std::uint32_t second) const noexcept {
+    const Triangle& s = triangles_[first];
+    const Triangle& t = triangles_[second];
+    const Vertex& a = vertices_[s[0]];
+    const Vertex& b = vertices_[t[0]];
+    const float near = 0.5f * a.apart;
+    const Vec4f normal_s = (x[s[1]] - x[s[0]]).cross3(x[s[2]] - x[s[0]]);
+    const Vec4f normal_t = (x[t[1]] - x[t[0]]).cross3(x[t[2]] - x[t[0]]);
+    return a.part == b.part && (a.start - b.start).squaredNorm() < near * near &&
+           normal_s.dot(normal_t) > 0.0f;
+}
+
 /// Lists the contact of a vertex with the nearest triangle at another one.
 void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other,
                          float reach) noexcept {
@@ -169,8 +184,7 @@ void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::ui
     }
     if (mine.layer != theirs.layer) {
         side_[vertex] = mine.layer > theirs.layer ? 1.0f : -1.0f;
-    } else if (met_[vertex] == kNobody ||
-               !same_piece(vertices_[triangles_[met_[vertex]][0]], vertices_[t[0]])) {
+    } else if (met_[vertex] == kNobody || !same_sheet(x, met_[vertex], nearest)) {
         side_[vertex] = height >= 0.0f ? 1.0f : -1.0f;
     }
     met_[vertex] = nearest;

@@ -60,6 +60,8 @@ class ClothContacts {
     [[nodiscard]] std::uint32_t cell_of(int cx, int cy, int cz) const noexcept;
     [[nodiscard]] std::uint32_t nearest_other(std::span<const Vec4f> x,
                                               std::uint32_t vertex) const noexcept;
+    [[nodiscard]] bool same_sheet(std::span<const Vec4f> x, std::uint32_t first,
+                                  std::uint32_t second) const noexcept;
     void meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other,
               float reach) noexcept;
     void untangle() noexcept;

@@ -1,13 +1,18 @@
 // In-plane stretch of a woven sheet: warp, weft and shear of every triangle.
 #pragma once
 
+#include "cloth/lanes.h"
 #include "cloth/sheet.h"
-#include "xpbd_cloth/lanes.h"
 
 namespace toile::xpbd_cloth {
 
 using cloth::ClothMesh;
 using cloth::Fabric;
+using cloth::kLanes;
+using cloth::Lanes3;
+using cloth::load;
+using cloth::load_rows;
+using cloth::store_rows;
 
 /// Constant-strain triangles as compliant constraints (Macklin et al. 2016, eq. 18, one iteration
 /// a substep): with F = [x1 - x0, x2 - x0] Dm^-1, columns F_u along the weft and F_v along the

@@ -7,7 +7,7 @@
 
 #include <immintrin.h>
 
-namespace toile::xpbd_cloth {
+namespace toile::cloth {
 
 inline constexpr std::size_t kLanes = 8;
 
@@ -21,6 +21,9 @@ inline __m256 dot(const Lanes3& a, const Lanes3& b) noexcept {
 }
 inline Lanes3 operator-(const Lanes3& a, const Lanes3& b) noexcept {
     return {_mm256_sub_ps(a.x, b.x), _mm256_sub_ps(a.y, b.y), _mm256_sub_ps(a.z, b.z)};
+}
+inline Lanes3 operator+(const Lanes3& a, const Lanes3& b) noexcept {
+    return {_mm256_add_ps(a.x, b.x), _mm256_add_ps(a.y, b.y), _mm256_add_ps(a.z, b.z)};
 }
 /// a s + b t
 inline Lanes3 blend(const Lanes3& a, __m256 s, const Lanes3& b, __m256 t) noexcept {
@@ -75,4 +78,4 @@ inline void store_rows(Vec4f* rows, const std::uint32_t* index, const Lanes3& a)
     put(3, _mm256_shuffle_ps(xy_high, zw_high, _MM_SHUFFLE(3, 2, 3, 2)));
 }
 
-} // namespace toile::xpbd_cloth
+} // namespace toile::cloth
