@@ -105,15 +105,15 @@ const BodyContacts::Plane BodyContacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), 
 
 BodyContacts::BodyContacts(std::span<const Triangle> triangles, std::size_t vertex_count,
                            std::span<const std::array<std::uint16_t, 4>> joints,
-                           std::span<const std::array<float, 4>> weights)
+                           std::span<const std::array<float, 4>> weights, bool centres)
     : triangles_(triangles.begin(), triangles.end()), vertex_count_(vertex_count) {
     check_skin(joints, weights, vertex_count);
-    const std::size_t samples = vertex_count + triangles_.size();
+    const std::size_t samples = vertex_count + (centres ? triangles_.size() : 0);
     mask_.resize(samples);
     for (std::size_t v = 0; v < vertex_count; ++v) {
         mask_[v] = covered_parts(joints[v], weights[v]);
     }
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (std::size_t t = 0; t < samples - vertex_count; ++t) {
         for (const std::uint32_t v : triangles_[t]) {
             mask_[vertex_count + t] |= mask_[v];
         }
@@ -407,7 +407,7 @@ void BodyContacts::refresh(const MovingBody& body, std::span<const Vec4> x, std:
         refresh_vertex(body, p, v[i], i, when, settings);
         list_vertex(p, v[i], i, when.until_next);
     }
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (std::size_t t = 0; t < sample_count() - vertex_count_; ++t) {
         const Triangle& corner = triangles_[t];
         const Vec4 speed = (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0f;
         const Vec4 p = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f + when.ahead * speed;

@@ -45,12 +45,13 @@ void check_skin(std::span<const std::array<std::uint16_t, 4>> joints,
 /// is kept outside of these however deep it got. Besides it may have one *other* place, a part
 /// that came near (a hand over the skirt, the second thigh), first met from outside. Where
 /// the body runs into itself and no room is left between both, the own place wins.
+/// Cloth of short edges hardly sags between its vertices and may do without the centres.
 class BodyContacts {
   public:
     /// \throw Error when joint rows do not match or no part of the body fits a vertex
     BodyContacts(std::span<const Triangle> triangles, std::size_t vertex_count,
                  std::span<const std::array<std::uint16_t, 4>> joints,
-                 std::span<const std::array<float, 4>> weights);
+                 std::span<const std::array<float, 4>> weights, bool centres = true);
 
     /// Finds each sample's place on the body at rest; `start` (nv) as bound to it.
     /// \throw Error when the body has no part that a vertex could lie on
@@ -70,7 +71,8 @@ class BodyContacts {
                  const ContactSettings& settings, bool centres = true) const noexcept;
 
     [[nodiscard]] std::size_t sample_count() const noexcept { return own_triangle_.size(); }
-    /// Body triangle under a sample; vertices first, then centres.
+    [[nodiscard]] bool has_centres() const noexcept { return sample_count() > vertex_count_; }
+    /// Body triangle under a sample; vertices first, then centres if it has them.
     [[nodiscard]] std::uint32_t own_triangle(std::size_t sample) const noexcept {
         return own_triangle_[sample];
     }

@@ -1,7 +1,6 @@
 #include "cloth/cloth_contacts.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace toile::cloth {
@@ -63,9 +62,13 @@ void ClothContacts::arrange(std::span<const ClothPart> parts, std::size_t rows) 
             star_[next[v]++] = t;
         }
     }
-    cell_first_.assign(std::bit_ceil(std::max<std::size_t>(2 * rows, 16)) + 1, 0);
-    cell_rows_.assign(rows, 0);
-    cell_.assign(rows, 0);
+    nearest_.assign(rows, kNobody);
+    std::vector<ClothTree::Vertex> leaves(rows);
+    for (std::size_t v = 0; v < rows; ++v) {
+        const Vec3f& p = vertices_[v].start;
+        leaves[v] = {Vec4f(p.x(), p.y(), p.z(), 0.0f), vertices_[v].apart, vertices_[v].part};
+    }
+    tree_.arrange(leaves);
     met_.assign(rows, kNobody);
     side_.assign(rows, 0.0f);
     contacts_.clear();
@@ -76,64 +79,6 @@ void ClothContacts::reset() noexcept {
     std::fill(met_.begin(), met_.end(), kNobody);
     std::fill(side_.begin(), side_.end(), 0.0f);
     contacts_.clear();
-}
-
-std::uint32_t ClothContacts::cell_of(int cx, int cy, int cz) const noexcept {
-    const std::uint32_t hash = static_cast<std::uint32_t>(cx) * 73856093u ^
-                               static_cast<std::uint32_t>(cy) * 19349663u ^
-                               static_cast<std::uint32_t>(cz) * 83492791u;
-    return hash & static_cast<std::uint32_t>(cell_first_.size() - 2);
-}
-
-void ClothContacts::sort_into_cells(std::span<const Vec4f> x) noexcept {
-    const float per_cell = 1.0f / radius_;
-    std::fill(cell_first_.begin(), cell_first_.end(), 0u);
-    for (std::size_t v = 0; v < vertices_.size(); ++v) {
-        cell_[v] = cell_of(static_cast<int>(std::floor(x[v].x() * per_cell)),
-                           static_cast<int>(std::floor(x[v].y() * per_cell)),
-                           static_cast<int>(std::floor(x[v].z() * per_cell)));
-        if (vertices_[v].part != kNobody) {
-            ++cell_first_[cell_[v]];
-        }
-    }
-    std::uint32_t sum = 0;
-    for (std::uint32_t& first : cell_first_) {
-        sum += first;
-        first = sum; // the end of the cell: filling backwards leaves the beginning
-    }
-    for (std::size_t v = vertices_.size(); v-- > 0;) {
-        if (vertices_[v].part != kNobody) {
-            cell_rows_[--cell_first_[cell_[v]]] = static_cast<std::uint32_t>(v);
-        }
-    }
-}
-
-/// The nearest vertex of another piece of cloth, of equally near ones the lowest.
-std::uint32_t ClothContacts::nearest_other(std::span<const Vec4f> x,
-                                           std::uint32_t vertex) const noexcept {
-    const Vec4f& p = x[vertex];
-    const Vertex& mine = vertices_[vertex];
-    const float per_cell = 1.0f / radius_;
-    const auto low = [&](float value) { return int(std::floor((value - radius_) * per_cell)); };
-    std::uint32_t best = kNobody;
-    float least = radius_ * radius_;
-    for (int cx = low(p.x()); cx <= low(p.x()) + 2; ++cx) {
-        for (int cy = low(p.y()); cy <= low(p.y()) + 2; ++cy) {
-            for (int cz = low(p.z()); cz <= low(p.z()) + 2; ++cz) {
-                const std::uint32_t cell = cell_of(cx, cy, cz);
-                for (std::uint32_t k = cell_first_[cell]; k < cell_first_[cell + 1]; ++k) {
-                    const std::uint32_t other = cell_rows_[k];
-                    const float squared = (x[other] - p).squaredNorm();
-                    const bool nearer = squared < least || (squared == least && other < best);
-                    if (nearer && !same_piece(mine, vertices_[other])) {
-                        least = squared;
-                        best = other;
-                    }
-                }
-            }
-        }
-    }
-    return best;
 }
 
 /// Is one triangle a near neighbour of the other in the cloth, and not folded back over it? Only
@@ -221,26 +166,16 @@ void ClothContacts::untangle() noexcept {
     }
 }
 
-void ClothContacts::find(std::span<const Vec4f> x, std::span<const Vec4f> v, float seconds,
-                         std::uint32_t frame) noexcept {
-    constexpr std::uint32_t kTurns = 3;
+void ClothContacts::find(std::span<const Vec4f> x, std::span<const Vec4f> v,
+                         float seconds) noexcept {
     contacts_.clear();
-    sort_into_cells(x);
+    tree_.find(x, radius_, nearest_);
     for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
-        if (vertices_[i].part == kNobody || vertices_[i].weight <= 0.0f) {
-            continue;
-        }
-        const float way = v[i].norm() * seconds;
-        const bool slow = kTurns * way < 0.5f * reach_;
-        if (met_[i] == kNobody && slow && (i + frame) % kTurns != 0) {
-            continue;
-        }
-        const std::uint32_t other = nearest_other(x, i);
-        if (other == kNobody) {
+        if (nearest_[i] == kNobody) {
             met_[i] = kNobody;
-            continue;
+        } else if (vertices_[i].weight > 0.0f) {
+            meet(x, i, nearest_[i], std::min(reach_ + v[i].norm() * seconds, radius_));
         }
-        meet(x, i, other, std::min(reach_ + way, radius_));
     }
     untangle();
 }

@@ -2,10 +2,7 @@
 // of another sheet, or of a part of its own that is far away along the cloth.
 #pragma once
 
-#include "core/types.h"
-
-#include <span>
-#include <vector>
+#include "cloth/cloth_tree.h"
 
 namespace toile::cloth {
 
@@ -32,10 +29,8 @@ class ClothContacts {
     /// Forgets who is near whom.
     void reset() noexcept;
 
-    /// Finds who is near or, at velocity v, will be within `seconds`; (rows) each. `frame` counts
-    /// calls: a slow vertex that is near nobody looks on every third.
-    void find(std::span<const Vec4f> x, std::span<const Vec4f> v, float seconds,
-              std::uint32_t frame) noexcept;
+    /// Finds who is near or, at velocity v, will be within `seconds`; (rows) each.
+    void find(std::span<const Vec4f> x, std::span<const Vec4f> v, float seconds) noexcept;
     /// Keeps them apart, with friction against the motion since q; (rows) each. What parts them is
     /// no reason to fly off: it is taken from q too. Who is deeper than the reach is let pass.
     void resolve(std::span<Vec4f> x, std::span<Vec4f> q) const noexcept;
@@ -43,7 +38,7 @@ class ClothContacts {
     [[nodiscard]] std::size_t contact_count() const noexcept { return contacts_.size(); }
 
   private:
-    static constexpr std::uint32_t kNobody = 0xffffffffu;
+    static constexpr std::uint32_t kNobody = ClothTree::kNobody;
     struct Vertex {
         Vec3f start = Vec3f::Zero();
         float weight = 0.0f; ///< 1/kg
@@ -56,10 +51,6 @@ class ClothContacts {
         float side, gap, friction; ///< +1 over the triangle, -1 beneath; m; Coulomb
     };
 
-    void sort_into_cells(std::span<const Vec4f> x) noexcept;
-    [[nodiscard]] std::uint32_t cell_of(int cx, int cy, int cz) const noexcept;
-    [[nodiscard]] std::uint32_t nearest_other(std::span<const Vec4f> x,
-                                              std::uint32_t vertex) const noexcept;
     [[nodiscard]] bool same_sheet(std::span<const Vec4f> x, std::uint32_t first,
                                   std::uint32_t second) const noexcept;
     void meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other,
@@ -75,11 +66,11 @@ class ClothContacts {
     std::vector<std::uint32_t> star_first_, star_; ///< triangles at each row
     std::vector<std::uint32_t> met_;               ///< (rows) triangle met, or kNobody
     std::vector<float> side_;                      ///< (rows) of that triangle; 0: none
-    std::vector<std::uint32_t> cell_first_, cell_rows_;
-    std::vector<std::uint32_t> cell_; ///< (rows)
+    ClothTree tree_;
+    std::vector<std::uint32_t> nearest_; ///< (rows) vertex of another piece, or kNobody
     std::vector<Contact> contacts_;   ///< capacity (rows)
     float reach_ = 0.0f;              ///< m, between surfaces
-    float radius_ = 0.0f;             ///< m, between vertices; also the size of a cell
+    float radius_ = 0.0f;             ///< m, between vertices
 };
 
 } // namespace toile::cloth

@@ -4,17 +4,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace toile::xpbd_cloth {
 namespace {
 
 // What need not be done in every substep: one pass serves so many.
-constexpr std::uint32_t kBendEvery = 2;
+constexpr float kBendPeriod = 0.0021f; // s; a fold is slower than a pull
+constexpr std::uint32_t kBendLeast = 2, kBendMost = 2;
 constexpr std::uint32_t kDampEvery = 4;
+constexpr float kCentreEdge = 0.015f; // m, shorter edges need no contact at triangle centres
 constexpr std::uint32_t kCentresEvery = 4; ///< between its corners cloth hardly sags into the body
+
+constexpr float kHard = std::numeric_limits<float>::infinity(); // N/m
 
 Vec4 to_vec4(const Vec3f& p) {
     return {p.x(), p.y(), p.z(), 0.0f};
+}
+
+/// Of what moved from q to x.
+[[gnu::always_inline]] inline Vec4 velocity(const Vec4& x, const Vec4& q, float per_second) {
+    constexpr float kFastest = 30.0f; // m/s
+    const Vec4 v = per_second * (x - q);
+    const float squared = v.squaredNorm();
+    return squared > kFastest * kFastest ? Vec4((kFastest / std::sqrt(squared)) * v) : v;
 }
 
 /// (nv) kg, lumped; vertices of no triangle get the mean.
@@ -44,10 +57,9 @@ std::vector<float> lumped_masses(const ClothMesh& mesh, const Fabric& fabric) {
 
 std::vector<Link> seam_links(const GarmentInput& input) {
     std::vector<Link> links;
-    const float stiffness = 0.5f * (input.fabric.stretch_warp + input.fabric.stretch_weft);
     for (const auto& seam : input.mesh.seams) {
         if (seam[0] != seam[1]) {
-            links.push_back({seam[0], seam[1], 0.0f, stiffness});
+            links.push_back({seam[0], seam[1], 0.0f});
         }
     }
     return links;
@@ -65,11 +77,11 @@ std::vector<Link> length_limits(const ClothMesh& mesh, float mean_edge, const Se
         for (const cloth::LengthLimit& limit :
              cloth::make_length_limits(mesh.positions.size(), material_paths(mesh),
                                        static_cast<float>(settings.limit_edges) * mean_edge)) {
-            links.push_back({limit.a, limit.b, longest * limit.longest, 0.0f});
+            links.push_back({limit.a, limit.b, longest * limit.longest});
         }
     }
     for (const Edge& edge : material_edges(mesh)) {
-        links.push_back({edge.a, edge.b, longest * edge.rest, 0.0f});
+        links.push_back({edge.a, edge.b, longest * edge.rest});
     }
     return links;
 }
@@ -80,7 +92,7 @@ std::vector<Link> border_limits(const ClothMesh& mesh, float strain_limit) {
     std::vector<Link> links;
     for (const Edge& edge : material_edges(mesh)) {
         if (edge.border && strain_limit > 0.0f) {
-            links.push_back({edge.a, edge.b, (1.0f + strain_limit) * edge.rest, 0.0f});
+            links.push_back({edge.a, edge.b, (1.0f + strain_limit) * edge.rest});
         }
     }
     return links;
@@ -95,8 +107,7 @@ std::vector<Link> edge_limits(const ClothMesh& mesh, const Settings& settings) {
     }
     for (const Edge& edge : material_edges(mesh)) {
         links.push_back({edge.a, edge.b,
-                         (1.0f + kSlack + static_cast<float>(settings.strain_limit)) * edge.rest,
-                         0.0f});
+                         (1.0f + kSlack + static_cast<float>(settings.strain_limit)) * edge.rest});
     }
     return links;
 }
@@ -123,16 +134,17 @@ GarmentCloth::GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest
       mass_(lumped_masses(ordered.input().mesh, fabric_)),
       inverse_mass_(cloth::inverse_masses(mass_, attachment_)),
       mean_edge_(mean_length(ordered.input().mesh)),
-      membrane_(ordered.input().mesh, fabric_, inverse_mass_),
+      membrane_(ordered.input().mesh, fabric_),
       bending_(ordered.input().mesh, fabric_, inverse_mass_),
-      seams_(seam_links(ordered.input()), inverse_mass_, false),
-      limits_(length_limits(ordered.input().mesh, mean_edge_, settings), inverse_mass_, true),
+      seams_(seam_links(ordered.input()), start_.size(),
+             0.5f * (fabric_.stretch_warp + fabric_.stretch_weft), false),
+      limits_(length_limits(ordered.input().mesh, mean_edge_, settings), start_.size(), kHard, true),
       borders_(border_limits(ordered.input().mesh, static_cast<float>(settings.strain_limit)),
-               inverse_mass_, true),
-      last_limits_(edge_limits(ordered.input().mesh, settings), inverse_mass_, true),
+               start_.size(), kHard, true),
+      last_limits_(edge_limits(ordered.input().mesh, settings), start_.size(), kHard, true),
       damping_(material_edges(ordered.input().mesh), inverse_mass_),
       contacts_(ordered.input().mesh.triangles, start_.size(), ordered.input().joints,
-                ordered.input().weights),
+                ordered.input().weights, mean_edge_ > kCentreEdge),
       cover_(ordered.input().mesh.triangles.size()) {
     contacts_.bind(rest_body, start_);
     for (std::uint32_t v = 0; v < start_.size(); ++v) {
@@ -164,11 +176,10 @@ void GarmentCloth::begin_step(std::span<const Vec3f> targets, float substep) noe
                    [&](std::uint32_t v) { return to_vec4(targets[v]); });
     if (substep > 0.0f) {
         membrane_.set_substep(substep);
-        bending_.set_substep(float(kBendEvery) * substep);
+        bend_every_ = static_cast<std::uint32_t>(
+            std::clamp(std::round(kBendPeriod / substep), float(kBendLeast), float(kBendMost)));
+        bending_.set_substep(static_cast<float>(bend_every_) * substep);
         seams_.set_substep(substep);
-        limits_.set_substep(substep);
-        borders_.set_substep(substep);
-        last_limits_.set_substep(substep);
     }
 }
 
@@ -178,6 +189,7 @@ void GarmentCloth::reset() noexcept {
     std::copy(target_after_.begin(), target_after_.end(), rows_.q.begin());
     std::fill(rows_.v.begin(), rows_.v.end(), Vec4::Zero());
     since_damped_ = 0.0f;
+    velocities_known_ = true;
     contacts_.reset();
 }
 
@@ -198,7 +210,7 @@ void GarmentCloth::find_contacts(const MovingBody& body, const Interval& interva
 
 void GarmentCloth::move(const Substep& now) noexcept {
     predict(now);
-    if (now.index % kBendEvery == 0) {
+    if (now.index % bend_every_ == 0) {
         bending_.solve(rows_.x);
     }
     seams_.solve(rows_.x);
@@ -207,19 +219,38 @@ void GarmentCloth::move(const Substep& now) noexcept {
     for (int pass = 0; pass < static_cast<int>(settings_.border_passes); ++pass) {
         borders_.solve(rows_.x);
     }
+    unweigh();
     follow_targets(now);
     hold_on_leash(now.last ? free_ : leashed_, now.fraction);
 }
 
+/// Velocities are written down only where something reads them before the next substep.
 void GarmentCloth::predict(const Substep& now) noexcept {
     const Vec4 fall(0.0f, static_cast<float>(-settings_.gravity) * now.length, 0.0f, 0.0f);
     const float keep = now.length / (1.0f + static_cast<float>(settings_.air_drag) * now.length);
+    const float per_second = 1.0f / now.length;
     for (std::size_t i = 0; i < start_.size(); ++i) {
-        rows_.q[i] = rows_.x[i];
-        rows_.x[i] += keep * (rows_.v[i] + fall);
+        Vec4 x = rows_.x[i];
+        const Vec4 v = velocities_known_ ? rows_.v[i] : velocity(x, rows_.q[i], per_second);
+        rows_.q[i] = x;
+        x += keep * (v + fall);
+        x.w() = inverse_mass_[i];
+        rows_.x[i] = x;
     }
     for (const std::uint32_t i : held_) {
-        rows_.x[i] = target(i, now.fraction);
+        rows_.x[i] = target(i, now.fraction); // of weight 0
+    }
+}
+
+void GarmentCloth::weigh() noexcept {
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+        rows_.x[i].w() = inverse_mass_[i];
+    }
+}
+
+void GarmentCloth::unweigh() noexcept {
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+        rows_.x[i].w() = 0.0f;
     }
 }
 
@@ -265,24 +296,21 @@ void GarmentCloth::meet_body(const Substep& now) noexcept {
 }
 
 void GarmentCloth::update_velocities(const Substep& now) noexcept {
-    constexpr float kFastest = 30.0f; // m/s
+    const bool damps = now.index % kDampEvery == kDampEvery - 1;
+    since_damped_ += now.length;
+    velocities_known_ = damps || now.last_of_interval;
+    if (!velocities_known_) {
+        return;
+    }
     const float per_second = 1.0f / now.length;
     for (std::size_t i = 0; i < start_.size(); ++i) {
-        Vec4 v = per_second * (rows_.x[i] - rows_.q[i]);
-        const float squared = v.squaredNorm();
-        if (squared > kFastest * kFastest) {
-            v *= kFastest / std::sqrt(squared);
-        }
-        rows_.v[i] = v;
+        rows_.v[i] = velocity(rows_.x[i], rows_.q[i], per_second);
     }
-    since_damped_ += now.length;
-    if (now.index % kDampEvery == 0) {
-        const float rate = fabric_.damping * static_cast<float>(settings_.damping_scale);
-        if (rate > 0.0f) {
-            damping_.apply(rows_.v, 1.0f - std::exp(-rate * since_damped_));
-        }
-        since_damped_ = 0.0f;
+    const float rate = fabric_.damping * static_cast<float>(settings_.damping_scale);
+    if (damps && rate > 0.0f) {
+        damping_.apply(rows_.v, 1.0f - std::exp(-rate * since_damped_));
     }
+    since_damped_ = damps ? 0.0f : since_damped_;
 }
 
 void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
@@ -295,8 +323,13 @@ void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
                       {0.0f, since_last, 0.0f, period_, 0, 1, true, 1}, still);
     std::copy(x.begin(), x.end(), q.begin());
     cover_.find(body, contacts_, x, 0.008f);
-    for (int pass = 0; pass < static_cast<int>(settings_.clean_passes); ++pass) {
+    const int passes = static_cast<int>(settings_.clean_passes);
+    weigh();
+    for (int pass = 0; pass < passes; ++pass) {
         last_limits_.solve(rows_.x);
+    }
+    unweigh();
+    for (int pass = 0; pass < passes; ++pass) {
         cover_.lift(body, contacts_.triangles(), x, inverse_mass_);
         contacts_.resolve({x, q, inverse_mass_}, 0.0f, 0.0f, still);
     }

@@ -31,6 +31,7 @@ struct Interval {
 struct Substep {
     std::uint32_t index; ///< in the step
     bool last;           ///< of the step
+    bool last_of_interval;
     float length;        ///< s
     float fraction;      ///< of the step that is over at its end
     float share;         ///< of the step that it is
@@ -92,6 +93,9 @@ class GarmentCloth {
     GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest_body,
                  const Settings& settings);
     void predict(const Substep& now) noexcept;
+    /// The constraints find each row's inverse mass in its w; everything else wants 0 there.
+    void weigh() noexcept;
+    void unweigh() noexcept;
     void follow_targets(const Substep& now) noexcept;
     void hold_on_leash(std::span<const std::uint32_t> vertices, float fraction) noexcept;
     void find_stretched_leashes() noexcept;
@@ -122,6 +126,8 @@ class GarmentCloth {
     std::vector<Vec4> target_before_, target_after_;
     float period_ = 0.0f;       ///< s, of the frame at hand
     float since_damped_ = 0.0f; ///< s
+    bool velocities_known_ = true; ///< are those of the rows' last substep
+    std::uint32_t bend_every_ = 2; ///< substeps
 };
 
 } // namespace toile::xpbd_cloth
