@@ -68,9 +68,9 @@ class ClothContacts {
     std::vector<float> side_;                      ///< (rows) of that triangle; 0: none
     ClothTree tree_;
     std::vector<std::uint32_t> nearest_; ///< (rows) vertex of another piece, or kNobody
-    std::vector<Contact> contacts_;   ///< capacity (rows)
-    float reach_ = 0.0f;              ///< m, between surfaces
-    float radius_ = 0.0f;             ///< m, between vertices
+    std::vector<Contact> contacts_;      ///< capacity (rows)
+    float reach_ = 0.0f;                 ///< m, between surfaces
+    float radius_ = 0.0f;                ///< m, between vertices
 };
 
 } // namespace toile::cloth

@@ -91,8 +91,7 @@ bool ClothTree::may_touch(std::uint32_t a, std::uint32_t b, float radius) const 
     if (p.part != q.part || p.part == kNobody) {
         return true;
     }
-    const Vec4f farthest =
-        (p.start.high - q.start.low).cwiseMax(q.start.high - p.start.low);
+    const Vec4f farthest = (p.start.high - q.start.low).cwiseMax(q.start.high - p.start.low);
     return farthest.squaredNorm() >= p.apart * p.apart;
 }
 

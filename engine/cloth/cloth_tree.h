@@ -56,7 +56,8 @@ class ClothTree {
     std::uint32_t build(std::uint32_t begin, std::uint32_t end);
     void refit(std::span<const Vec4f> x) noexcept;
     [[nodiscard]] bool may_touch(std::uint32_t a, std::uint32_t b, float radius) const noexcept;
-    void meet(const Leaf& a, const Leaf& b, float radius2, std::span<std::uint32_t> nearest) noexcept;
+    void meet(const Leaf& a, const Leaf& b, float radius2,
+              std::span<std::uint32_t> nearest) noexcept;
     void note(std::uint32_t row, std::uint32_t other, float squared,
               std::span<std::uint32_t> nearest) noexcept;
 

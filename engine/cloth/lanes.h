@@ -26,7 +26,8 @@ struct Lanes3 {
     return {_mm256_add_ps(a.x, b.x), _mm256_add_ps(a.y, b.y), _mm256_add_ps(a.z, b.z)};
 }
 /// a s + b t
-[[gnu::always_inline]] inline Lanes3 blend(const Lanes3& a, __m256 s, const Lanes3& b, __m256 t) noexcept {
+[[gnu::always_inline]] inline Lanes3 blend(const Lanes3& a, __m256 s, const Lanes3& b,
+                                           __m256 t) noexcept {
     return {_mm256_fmadd_ps(a.x, s, _mm256_mul_ps(b.x, t)),
             _mm256_fmadd_ps(a.y, s, _mm256_mul_ps(b.y, t)),
             _mm256_fmadd_ps(a.z, s, _mm256_mul_ps(b.z, t))};
@@ -40,6 +41,16 @@ struct Lanes3 {
 
 [[gnu::always_inline]] inline __m256 load(const float* values) noexcept {
     return _mm256_loadu_ps(values);
+}
+
+/// Asks for what stands some way behind one element of a long array that is read from its front.
+template <class Element>
+[[gnu::always_inline]] inline void read_ahead(const Element& element) noexcept {
+    constexpr std::size_t kAhead = 2048; // bytes
+    const char* const at = reinterpret_cast<const char*>(&element) + kAhead;
+    for (std::size_t line = 0; line < sizeof(Element); line += 64) {
+        __builtin_prefetch(at + line);
+    }
 }
 
 /// x y z w of eight rows.
@@ -68,13 +79,15 @@ template <class Index>
              _mm256_shuffle_ps(zw01, zw23, _MM_SHUFFLE(1, 0, 1, 0))},
             _mm256_shuffle_ps(zw01, zw23, _MM_SHUFFLE(3, 2, 3, 2))};
 }
-[[gnu::always_inline]] inline Lanes3 load_rows(const Vec4f* rows, const std::uint32_t* index) noexcept {
+[[gnu::always_inline]] inline Lanes3 load_rows(const Vec4f* rows,
+                                               const std::uint32_t* index) noexcept {
     return load_rows4(rows, index).xyz;
 }
 
 /// Back again.
 template <class Index>
-[[gnu::always_inline]] inline void store_rows4(Vec4f* rows, const Index* index, const Lanes4& a) noexcept {
+[[gnu::always_inline]] inline void store_rows4(Vec4f* rows, const Index* index,
+                                               const Lanes4& a) noexcept {
     const __m256 xy_low = _mm256_unpacklo_ps(a.xyz.x, a.xyz.y);
     const __m256 xy_high = _mm256_unpackhi_ps(a.xyz.x, a.xyz.y);
     const __m256 zw_low = _mm256_unpacklo_ps(a.xyz.z, a.w);
@@ -89,7 +102,8 @@ template <class Index>
     put(3, _mm256_shuffle_ps(xy_high, zw_high, _MM_SHUFFLE(3, 2, 3, 2)));
 }
 /// Back again, with w = 0.
-[[gnu::always_inline]] inline void store_rows(Vec4f* rows, const std::uint32_t* index, const Lanes3& a) noexcept {
+[[gnu::always_inline]] inline void store_rows(Vec4f* rows, const std::uint32_t* index,
+                                              const Lanes3& a) noexcept {
     store_rows4(rows, index, {a, _mm256_setzero_ps()});
 }
 

@@ -80,7 +80,8 @@ void SkinCover::find(const MovingBody& body, const BodyContacts& contacts, std::
     const std::span<const Triangle> triangles = contacts.triangles();
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         const Triangle& corner = triangles[t];
-        const std::uint32_t under = contacts.own_triangle(contacts.has_centres() ? x.size() + t : corner[0]);
+        const std::uint32_t under =
+            contacts.own_triangle(contacts.has_centres() ? x.size() + t : corner[0]);
         if (under == kNone) {
             continue;
         }
@@ -95,8 +96,9 @@ void SkinCover::find(const MovingBody& body, const BodyContacts& contacts, std::
             radius2 = std::max(radius2, (x[v] - centre).squaredNorm());
         }
         std::array<std::uint32_t, kMostSkin> skin{below[0], below[1], below[2]};
-        const std::size_t count = contacts.has_centres() ? add_across(body, under, skin)
-                                                         : add_corners(body, contacts, corner, skin);
+        const std::size_t count = contacts.has_centres()
+                                      ? add_across(body, under, skin)
+                                      : add_corners(body, contacts, corner, skin);
         for (std::size_t k = 0; k < count; ++k) {
             // Its line along its normal meets nothing where it passes all corners by.
             const Vec4 rise = centre - body.positions()[skin[k]];

@@ -141,7 +141,8 @@ void Bending::set_substep(float seconds) noexcept {
 }
 
 template <class Index>
-[[gnu::always_inline]] inline void Bending::solve_hinge(const Hinge<Index>& hinge, Vec4f* x) noexcept {
+[[gnu::always_inline]] inline void Bending::solve_hinge(const Hinge<Index>& hinge,
+                                                        Vec4f* x) noexcept {
     __m128 p[4];
     for (std::size_t i = 0; i < 4; ++i) {
         p[i] = _mm_load_ps(x[hinge.vertex[i]].data());
@@ -149,8 +150,8 @@ template <class Index>
     const __m128 k1 = _mm_set1_ps(hinge.k[0]);
     const __m128 k2 = _mm_set1_ps(hinge.k[1]);
     const __m128 k3 = _mm_set1_ps(hinge.k[2]);
-    const __m128 k[4] = {
-        _mm_sub_ps(_mm_setzero_ps(), _mm_add_ps(_mm_add_ps(k1, k2), k3)), k1, k2, k3};
+    const __m128 k[4] = {_mm_sub_ps(_mm_setzero_ps(), _mm_add_ps(_mm_add_ps(k1, k2), k3)), k1, k2,
+                         k3};
     __m128 c = _mm_mul_ps(k[0], p[0]);
     for (std::size_t i = 1; i < 4; ++i) {
         c = _mm_fmadd_ps(k[i], p[i], c);
@@ -164,9 +165,11 @@ template <class Index>
 
 void Bending::solve(std::span<Vec4f> x) const noexcept {
     for (const Hinge<SmallIndex>& hinge : small_) {
+        cloth::read_ahead(hinge);
         solve_hinge(hinge, x.data());
     }
     for (const Hinge<std::uint32_t>& hinge : large_) {
+        cloth::read_ahead(hinge);
         solve_hinge(hinge, x.data());
     }
 }

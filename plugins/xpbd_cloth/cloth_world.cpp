@@ -138,9 +138,13 @@ float ClothWorld::simulate(double dt_s, std::uint32_t substeps) noexcept {
             cloth_contacts_.find(x_, v_, interval.length());
         }
         for (std::uint32_t s = done; s < end; ++s) {
-            const Substep now{s,       s + 1 == substeps, s + 1 == end,
-                              substep, share * static_cast<float>(s + 1),
-                              share,   static_cast<float>(s + 1 - done) * substep - last_half};
+            const Substep now{s,
+                              s + 1 == substeps,
+                              s + 1 == end,
+                              substep,
+                              share * static_cast<float>(s + 1),
+                              share,
+                              static_cast<float>(s + 1 - done) * substep - last_half};
             for (Entry& entry : garments_) {
                 entry.cloth.move(now);
             }

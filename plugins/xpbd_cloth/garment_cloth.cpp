@@ -13,7 +13,7 @@ namespace {
 constexpr float kBendPeriod = 0.0021f; // s; a fold is slower than a pull
 constexpr std::uint32_t kBendLeast = 2, kBendMost = 2;
 constexpr std::uint32_t kDampEvery = 4;
-constexpr float kCentreEdge = 0.015f; // m, shorter edges need no contact at triangle centres
+constexpr float kCentreEdge = 0.015f;      // m, shorter edges need no contact at triangle centres
 constexpr std::uint32_t kCentresEvery = 4; ///< between its corners cloth hardly sags into the body
 
 constexpr float kHard = std::numeric_limits<float>::infinity(); // N/m
@@ -133,12 +133,12 @@ GarmentCloth::GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest
       attachment_(cloth::attachments(ordered.input())),
       mass_(lumped_masses(ordered.input().mesh, fabric_)),
       inverse_mass_(cloth::inverse_masses(mass_, attachment_)),
-      mean_edge_(mean_length(ordered.input().mesh)),
-      membrane_(ordered.input().mesh, fabric_),
+      mean_edge_(mean_length(ordered.input().mesh)), membrane_(ordered.input().mesh, fabric_),
       bending_(ordered.input().mesh, fabric_, inverse_mass_),
       seams_(seam_links(ordered.input()), start_.size(),
              0.5f * (fabric_.stretch_warp + fabric_.stretch_weft), false),
-      limits_(length_limits(ordered.input().mesh, mean_edge_, settings), start_.size(), kHard, true),
+      limits_(length_limits(ordered.input().mesh, mean_edge_, settings), start_.size(), kHard,
+              true),
       borders_(border_limits(ordered.input().mesh, static_cast<float>(settings.strain_limit)),
                start_.size(), kHard, true),
       last_limits_(edge_limits(ordered.input().mesh, settings), start_.size(), kHard, true),
@@ -164,10 +164,12 @@ GarmentCloth::GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest
     }
 }
 
+/// On finer cloth a pull may go slower: the limits over several edges carry more of its way.
 double GarmentCloth::substep_rate() const noexcept {
-    return settings_.substep_rate > 0.0
-               ? settings_.substep_rate
-               : std::clamp(settings_.wave_speed / static_cast<double>(mean_edge_), 480.0, 6000.0);
+    constexpr double kUsual = 0.02; // m
+    const double finer = std::pow(static_cast<double>(mean_edge_) / kUsual, 0.4);
+    const double rate = settings_.wave_speed * finer / static_cast<double>(mean_edge_);
+    return settings_.substep_rate > 0.0 ? settings_.substep_rate : std::clamp(rate, 480.0, 6000.0);
 }
 
 void GarmentCloth::begin_step(std::span<const Vec3f> targets, float substep) noexcept {

@@ -32,10 +32,10 @@ struct Substep {
     std::uint32_t index; ///< in the step
     bool last;           ///< of the step
     bool last_of_interval;
-    float length;        ///< s
-    float fraction;      ///< of the step that is over at its end
-    float share;         ///< of the step that it is
-    float since;         ///< s, from the body of the contacts to its end
+    float length;   ///< s
+    float fraction; ///< of the step that is over at its end
+    float share;    ///< of the step that it is
+    float since;    ///< s, from the body of the contacts to its end
 };
 
 class GarmentCloth {
@@ -124,8 +124,8 @@ class GarmentCloth {
     cloth::SkinCover cover_;
     Rows rows_;
     std::vector<Vec4> target_before_, target_after_;
-    float period_ = 0.0f;       ///< s, of the frame at hand
-    float since_damped_ = 0.0f; ///< s
+    float period_ = 0.0f;          ///< s, of the frame at hand
+    float since_damped_ = 0.0f;    ///< s
     bool velocities_known_ = true; ///< are those of the rows' last substep
     std::uint32_t bend_every_ = 2; ///< substeps
 };

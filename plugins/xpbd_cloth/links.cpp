@@ -55,6 +55,7 @@ void Links::solve_blocks(std::span<const Block<Index>> blocks, Vec4f* x) const n
     // At least a little, for two that are held.
     const __m256 soft = _mm256_set1_ps(std::max(softness_ / (substep_ * substep_), 1e-6f));
     for (const Block<Index>& block : blocks) {
+        cloth::read_ahead(block);
         Lanes4 a = load_rows4(x, block.end[0]);
         Lanes4 b = load_rows4(x, block.end[1]);
         const Lanes3 apart = b.xyz - a.xyz;

@@ -63,7 +63,8 @@ Membrane::Membrane(const ClothMesh& mesh, const Fabric& fabric)
 }
 
 template <class Index>
-[[gnu::always_inline]] inline void Membrane::solve_block(const Block<Index>& block, const Softness& soft, Vec4f* x) noexcept {
+[[gnu::always_inline]] inline void Membrane::solve_block(const Block<Index>& block,
+                                                         const Softness& soft, Vec4f* x) noexcept {
     const __m256 zero = _mm256_setzero_ps();
     const __m256 one = _mm256_set1_ps(1.0f);
     const __m256 tiny = _mm256_set1_ps(1e-6f);
@@ -89,8 +90,7 @@ template <class Index>
         const __m256 sum = _mm256_fmadd_ps(
             w0, c0,
             _mm256_fmadd_ps(w1, c1, _mm256_fmadd_ps(w2, c2, _mm256_mul_ps(softness, per_area))));
-        const __m256 pull =
-            _mm256_div_ps(_mm256_sub_ps(one, length), _mm256_mul_ps(length, sum));
+        const __m256 pull = _mm256_div_ps(_mm256_sub_ps(one, length), _mm256_mul_ps(length, sum));
         add(p1.xyz, _mm256_mul_ps(w1, pull), f);
         add(p2.xyz, _mm256_mul_ps(w2, pull), f);
         add(p0.xyz, _mm256_mul_ps(w0, pull), f);
@@ -125,9 +125,11 @@ void Membrane::solve(std::span<Vec4f> x) const noexcept {
     };
     const Softness soft{softness(stiffness_u_), softness(stiffness_v_), softness(stiffness_s_)};
     for (const Block<SmallIndex>& block : small_) {
+        cloth::read_ahead(block);
         solve_block(block, soft, x.data());
     }
     for (const Block<std::uint32_t>& block : large_) {
+        cloth::read_ahead(block);
         solve_block(block, soft, x.data());
     }
 }

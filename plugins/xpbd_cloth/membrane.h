@@ -10,8 +10,8 @@ using cloth::ClothMesh;
 using cloth::Fabric;
 using cloth::kLanes;
 using cloth::Lanes3;
-using cloth::load;
 using cloth::Lanes4;
+using cloth::load;
 using cloth::load_rows4;
 using cloth::store_rows4;
 
