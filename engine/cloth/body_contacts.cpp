@@ -85,28 +85,35 @@ bool lifts(const MovingBody& body, const SurfacePoint& own, const SurfacePoint& 
 
 } // namespace
 
-const BodyContacts::Plane BodyContacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), Vec4::Zero()};
-
-BodyContacts::BodyContacts(std::span<const Triangle> triangles, std::size_t vertex_count,
-                           std::span<const std::array<std::uint16_t, 4>> joints,
-                           std::span<const std::array<float, 4>> weights)
-    : triangles_(triangles.begin(), triangles.end()), vertex_count_(vertex_count) {
+void check_skin(std::span<const std::array<std::uint16_t, 4>> joints,
+                std::span<const std::array<float, 4>> weights, std::size_t vertex_count) {
     if (joints.size() != vertex_count || weights.size() != vertex_count) {
         throw Error("garment: " + std::to_string(joints.size()) + " joint rows and " +
                     std::to_string(weights.size()) + " weight rows for " +
                     std::to_string(vertex_count) + " vertices");
     }
-    const std::size_t samples = vertex_count + triangles_.size();
-    mask_.resize(samples);
     for (std::size_t v = 0; v < vertex_count; ++v) {
         for (std::size_t k = 0; k < 4; ++k) {
             if (!(std::abs(weights[v][k]) <= 1.5f) || joints[v][k] >= kBodyJoints) {
                 throw Error("garment: vertex " + std::to_string(v) + " has a bad joint weight");
             }
         }
+    }
+}
+
+const BodyContacts::Plane BodyContacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), Vec4::Zero()};
+
+BodyContacts::BodyContacts(std::span<const Triangle> triangles, std::size_t vertex_count,
+                           std::span<const std::array<std::uint16_t, 4>> joints,
+                           std::span<const std::array<float, 4>> weights, bool centres)
+    : triangles_(triangles.begin(), triangles.end()), vertex_count_(vertex_count) {
+    check_skin(joints, weights, vertex_count);
+    const std::size_t samples = vertex_count + (centres ? triangles_.size() : 0);
+    mask_.resize(samples);
+    for (std::size_t v = 0; v < vertex_count; ++v) {
         mask_[v] = covered_parts(joints[v], weights[v]);
     }
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (std::size_t t = 0; t < samples - vertex_count; ++t) {
         for (const std::uint32_t v : triangles_[t]) {
             mask_[vertex_count + t] |= mask_[v];
         }
@@ -118,8 +125,8 @@ BodyContacts::BodyContacts(std::span<const Triangle> triangles, std::size_t vert
     other_plane_.assign(samples, kNowhere);
     own_place_.assign(samples, {1.0f, 0.0f, 0.0f});
     drift_.assign(samples, 0.0f);
-    for (std::vector<ActivePlane>* list :
-         {&own_vertices_, &other_vertices_, &own_centres_, &other_centres_}) {
+    own_vertices_.reserve(vertex_count / kLanes + 1);
+    for (std::vector<ActivePlane>* list : {&other_vertices_, &own_centres_, &other_centres_}) {
         list->reserve(samples);
     }
 }
@@ -306,11 +313,11 @@ void BodyContacts::refresh_vertex(const MovingBody& body, const Vec4& p, const V
     if (own.triangle == kNone) {
         return; // not a finite position; the world starts the garment anew
     }
+    const float period = when.lazy_frame == 0 ? when.period : kLook * when.period;
     if (looks) {
-        const float period = when.lazy_frame == 0 ? when.period : kLook * when.period;
         look_around(body, p, vertex, settings, period, own);
     }
-    place_sample(body, p, vertex, own, settings, when.period);
+    place_sample(body, p, vertex, own, settings, period); // known until it looks again
 }
 
 void BodyContacts::refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v,
@@ -350,35 +357,62 @@ void BodyContacts::refresh_centre(const MovingBody& body, const Vec4& p, const V
     place_sample(body, p, sample, own, settings, when.period);
 }
 
-void BodyContacts::list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
-                                std::vector<ActivePlane>& own,
-                                std::vector<ActivePlane>& other) noexcept {
+/// Fills the lanes of a block one by one; those to come repeat it.
+void BodyContacts::list_own(std::uint32_t vertex, const Plane& plane) noexcept {
+    const std::size_t lane = own_count_++ % kLanes;
+    if (lane == 0) {
+        own_vertices_.emplace_back();
+    }
+    PlaneBlock& block = own_vertices_.back();
+    for (std::size_t l = lane; l < kLanes; ++l) {
+        block.vertex[l] = vertex;
+        for (int k = 0; k < 4; ++k) {
+            block.normal[k][l] = plane.normal[k];
+            block.velocity[k][l] = plane.velocity[k];
+        }
+    }
+}
+
+void BodyContacts::list_vertex(const Vec4& p, const Vec4& v, std::uint32_t vertex,
+                               float until_next) noexcept {
+    const Plane& plane = own_plane_[vertex];
+    if (is_near(plane.normal, plane.velocity, p, v, kTouching, until_next)) {
+        list_own(vertex, plane);
+    }
+    if (other_triangle_[vertex] != kNone) {
+        other_vertices_.push_back({vertex, other_plane_[vertex]});
+    }
+}
+
+void BodyContacts::list_centre(const Vec4& p, const Vec4& v, std::size_t sample,
+                               float until_next) noexcept {
     const Plane& plane = own_plane_[sample];
     if (is_near(plane.normal, plane.velocity, p, v, kTouching, until_next)) {
-        own.push_back({static_cast<std::uint32_t>(sample), plane});
+        own_centres_.push_back({static_cast<std::uint32_t>(sample), plane});
     }
     if (other_triangle_[sample] != kNone) {
-        other.push_back({static_cast<std::uint32_t>(sample), other_plane_[sample]});
+        other_centres_.push_back({static_cast<std::uint32_t>(sample), other_plane_[sample]});
     }
 }
 
 void BodyContacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
                            const Refresh& when, const ContactSettings& settings) noexcept {
     own_vertices_.clear();
+    own_count_ = 0;
     other_vertices_.clear();
     own_centres_.clear();
     other_centres_.clear();
     for (std::uint32_t i = 0; i < vertex_count_; ++i) {
         const Vec4 p = x[i] + when.ahead * v[i];
         refresh_vertex(body, p, v[i], i, when, settings);
-        list_if_near(p, v[i], i, when.until_next, own_vertices_, other_vertices_);
+        list_vertex(p, v[i], i, when.until_next);
     }
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (std::size_t t = 0; t < sample_count() - vertex_count_; ++t) {
         const Triangle& corner = triangles_[t];
         const Vec4 speed = (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0f;
         const Vec4 p = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f + when.ahead * speed;
         refresh_centre(body, p, speed, t, when, settings);
-        list_if_near(p, speed, vertex_count_ + t, when.until_next, own_centres_, other_centres_);
+        list_centre(p, speed, vertex_count_ + t, when.until_next);
     }
 }
 

@@ -2,6 +2,7 @@
 // over, the plane that stands for it between two refreshes, and the push with friction.
 #pragma once
 
+#include "cloth/lanes.h"
 #include "cloth/moving_body.h"
 
 namespace toile::cloth {
@@ -35,17 +36,22 @@ struct Particles {
     std::span<const float> w;
 };
 
+/// \throw Error when joint rows do not match the vertices, or one is not sound
+void check_skin(std::span<const std::array<std::uint16_t, 4>> joints,
+                std::span<const std::array<float, 4>> weights, std::size_t vertex_count);
+
 /// Samples are the vertices, then the triangle centres. Each sample follows its *own* place on
 /// the body, found by walking from where it was, over the parts that its joints say it covers: it
 /// is kept outside of these however deep it got. Besides it may have one *other* place, a part
 /// that came near (a hand over the skirt, the second thigh), first met from outside. Where
 /// the body runs into itself and no room is left between both, the own place wins.
+/// Cloth of short edges hardly sags between its vertices and may do without the centres.
 class BodyContacts {
   public:
     /// \throw Error when joint rows do not match or no part of the body fits a vertex
     BodyContacts(std::span<const Triangle> triangles, std::size_t vertex_count,
                  std::span<const std::array<std::uint16_t, 4>> joints,
-                 std::span<const std::array<float, 4>> weights);
+                 std::span<const std::array<float, 4>> weights, bool centres = true);
 
     /// Finds each sample's place on the body at rest; `start` (nv) as bound to it.
     /// \throw Error when the body has no part that a vertex could lie on
@@ -60,12 +66,13 @@ class BodyContacts {
                  const Refresh& when, const ContactSettings& settings) noexcept;
 
     /// Pushes everything out, `since` seconds after (or before) the last refresh's body, with
-    /// friction over a substep of `substep` seconds.
+    /// friction over a substep of `substep` seconds; `centres`: those of triangles too.
     void resolve(const Particles& particles, float since, float substep,
-                 const ContactSettings& settings) const noexcept;
+                 const ContactSettings& settings, bool centres = true) const noexcept;
 
     [[nodiscard]] std::size_t sample_count() const noexcept { return own_triangle_.size(); }
-    /// Body triangle under a sample; vertices first, then centres.
+    [[nodiscard]] bool has_centres() const noexcept { return sample_count() > vertex_count_; }
+    /// Body triangle under a sample; vertices first, then centres if it has them.
     [[nodiscard]] std::uint32_t own_triangle(std::size_t sample) const noexcept {
         return own_triangle_[sample];
     }
@@ -82,6 +89,11 @@ class BodyContacts {
         std::uint32_t sample;
         Plane plane;
     };
+    /// Eight planes under eight vertices; the last lanes may repeat one.
+    struct alignas(32) PlaneBlock {
+        std::uint32_t vertex[kLanes];
+        float normal[4][kLanes], velocity[4][kLanes];
+    };
 
     void refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v, std::uint32_t vertex,
                         const Refresh& when, const ContactSettings& settings) noexcept;
@@ -92,8 +104,9 @@ class BodyContacts {
     void place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
                       const SurfacePoint& own, const ContactSettings& settings,
                       float period) noexcept;
-    void list_if_near(const Vec4& p, const Vec4& v, std::size_t sample, float until_next,
-                      std::vector<ActivePlane>& own, std::vector<ActivePlane>& other) noexcept;
+    void list_vertex(const Vec4& p, const Vec4& v, std::uint32_t vertex, float until_next) noexcept;
+    void list_centre(const Vec4& p, const Vec4& v, std::size_t sample, float until_next) noexcept;
+    void list_own(std::uint32_t vertex, const Plane& plane) noexcept;
     [[nodiscard]] static Plane plane_at(const MovingBody& body, const Vec4& p,
                                         const SurfacePoint& at) noexcept;
     [[nodiscard]] bool has_drifted(const MovingBody& body, const Vec4& p, const Vec4& v,
@@ -104,6 +117,8 @@ class BodyContacts {
                                      std::uint32_t triangle) const noexcept;
     void push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
                      float since, float substep, const ContactSettings& settings) const noexcept;
+    static void push_block(const Particles& particles, const PlaneBlock& block, float since,
+                           float substep, const ContactSettings& settings) noexcept;
     void push_centre(const Particles& particles, const Triangle& corner, const Plane& plane,
                      float since, float substep, const ContactSettings& settings) const noexcept;
 
@@ -117,7 +132,9 @@ class BodyContacts {
     std::vector<std::array<float, 3>> own_place_; ///< (samples) barycentric
     std::vector<float> drift_; ///< (samples) m, at most slid over the skin since its last walk
     /// Planes within reach until the next refresh; capacity (samples).
-    std::vector<ActivePlane> own_vertices_, other_vertices_, own_centres_, other_centres_;
+    std::vector<PlaneBlock> own_vertices_;
+    std::size_t own_count_ = 0; ///< vertices in these blocks
+    std::vector<ActivePlane> other_vertices_, own_centres_, other_centres_;
 };
 
 } // namespace toile::cloth

@@ -1,7 +1,6 @@
 #include "cloth/cloth_contacts.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace toile::cloth {
@@ -63,13 +62,18 @@ void ClothContacts::arrange(std::span<const ClothPart> parts, std::size_t rows) 
             star_[next[v]++] = t;
         }
     }
-    cell_first_.assign(std::bit_ceil(std::max<std::size_t>(2 * rows, 16)) + 1, 0);
-    cell_rows_.assign(rows, 0);
-    cell_.assign(rows, 0);
-    met_.assign(rows, kNobody);
-    side_.assign(rows, 0.0f);
+    tangled_.assign(rows, 0);
+    nearest_.assign(2 * rows, kNobody);
+    std::vector<ClothTree::Vertex> leaves(rows);
+    for (std::size_t v = 0; v < rows; ++v) {
+        const Vec3f& p = vertices_[v].start;
+        leaves[v] = {Vec4f(p.x(), p.y(), p.z(), 0.0f), vertices_[v].apart, vertices_[v].part};
+    }
+    tree_.arrange(leaves);
+    met_.assign(2 * rows, kNobody);
+    side_.assign(2 * rows, 0.0f);
     contacts_.clear();
-    contacts_.reserve(rows);
+    contacts_.reserve(2 * rows);
 }
 
 void ClothContacts::reset() noexcept {
@@ -78,68 +82,42 @@ void ClothContacts::reset() noexcept {
     contacts_.clear();
 }
 
-std::uint32_t ClothContacts::cell_of(int cx, int cy, int cz) const noexcept {
-    const std::uint32_t hash = static_cast<std::uint32_t>(cx) * 73856093u ^
-                               static_cast<std::uint32_t>(cy) * 19349663u ^
-                               static_cast<std::uint32_t>(cz) * 83492791u;
-    return hash & static_cast<std::uint32_t>(cell_first_.size() - 2);
+/// Is one triangle a near neighbour of the other in the cloth, and not folded back over it? Only
+/// then is what lies over the one over the other too.
+bool ClothContacts::same_sheet(std::span<const Vec4f> x, std::uint32_t first,
+                               std::uint32_t second) const noexcept {
+    const Triangle& s = triangles_[first];
+    const Triangle& t = triangles_[second];
+    const Vertex& a = vertices_[s[0]];
+    const Vertex& b = vertices_[t[0]];
+    const float near = 0.5f * a.apart;
+    const Vec4f normal_s = (x[s[1]] - x[s[0]]).cross3(x[s[2]] - x[s[0]]);
+    const Vec4f normal_t = (x[t[1]] - x[t[0]]).cross3(x[t[2]] - x[t[0]]);
+    return a.part == b.part && (a.start - b.start).squaredNorm() < near * near &&
+           normal_s.dot(normal_t) > 0.0f;
 }
 
-void ClothContacts::sort_into_cells(std::span<const Vec4f> x) noexcept {
-    const float per_cell = 1.0f / radius_;
-    std::fill(cell_first_.begin(), cell_first_.end(), 0u);
-    for (std::size_t v = 0; v < vertices_.size(); ++v) {
-        cell_[v] = cell_of(static_cast<int>(std::floor(x[v].x() * per_cell)),
-                           static_cast<int>(std::floor(x[v].y() * per_cell)),
-                           static_cast<int>(std::floor(x[v].z() * per_cell)));
-        if (vertices_[v].part != kNobody) {
-            ++cell_first_[cell_[v]];
-        }
+Vec4f ClothContacts::normal_of(std::span<const Vec4f> x, std::uint32_t vertex) const noexcept {
+    Vec4f sum = Vec4f::Zero();
+    for (std::uint32_t s = star_first_[vertex]; s < star_first_[vertex + 1]; ++s) {
+        const Triangle& t = triangles_[star_[s]];
+        sum += (x[t[1]] - x[t[0]]).cross3(x[t[2]] - x[t[0]]);
     }
-    std::uint32_t sum = 0;
-    for (std::uint32_t& first : cell_first_) {
-        sum += first;
-        first = sum; // the end of the cell: filling backwards leaves the beginning
-    }
-    for (std::size_t v = vertices_.size(); v-- > 0;) {
-        if (vertices_[v].part != kNobody) {
-            cell_rows_[--cell_first_[cell_[v]]] = static_cast<std::uint32_t>(v);
-        }
-    }
+    return sum;
 }
 
-/// The nearest vertex of another piece of cloth, of equally near ones the lowest.
-std::uint32_t ClothContacts::nearest_other(std::span<const Vec4f> x,
-                                           std::uint32_t vertex) const noexcept {
-    const Vec4f& p = x[vertex];
-    const Vertex& mine = vertices_[vertex];
-    const float per_cell = 1.0f / radius_;
-    const auto low = [&](float value) { return int(std::floor((value - radius_) * per_cell)); };
-    std::uint32_t best = kNobody;
-    float least = radius_ * radius_;
-    for (int cx = low(p.x()); cx <= low(p.x()) + 2; ++cx) {
-        for (int cy = low(p.y()); cy <= low(p.y()) + 2; ++cy) {
-            for (int cz = low(p.z()); cz <= low(p.z()) + 2; ++cz) {
-                const std::uint32_t cell = cell_of(cx, cy, cz);
-                for (std::uint32_t k = cell_first_[cell]; k < cell_first_[cell + 1]; ++k) {
-                    const std::uint32_t other = cell_rows_[k];
-                    const float squared = (x[other] - p).squaredNorm();
-                    const bool nearer = squared < least || (squared == least && other < best);
-                    if (nearer && !same_piece(mine, vertices_[other])) {
-                        least = squared;
-                        best = other;
-                    }
-                }
-            }
-        }
-    }
-    return best;
+/// Where they face each other they are on two parts of the body that meet.
+bool ClothContacts::layered(std::span<const Vec4f> x, std::uint32_t a,
+                            std::uint32_t b) const noexcept {
+    return parts_[vertices_[a].part].layer != parts_[vertices_[b].part].layer &&
+           normal_of(x, a).dot(normal_of(x, b)) > 0.0f;
 }
 
 /// Lists the contact of a vertex with the nearest triangle at another one.
 void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other,
                          float reach) noexcept {
     const Vec4f& p = x[vertex];
+    const std::size_t slot = slot_of(vertex, other);
     float least = reach * reach;
     std::uint32_t nearest = kNobody;
     std::array<float, 3> place{};
@@ -155,7 +133,7 @@ void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::ui
         }
     }
     if (nearest == kNobody) {
-        met_[vertex] = kNobody;
+        met_[slot] = kNobody;
         return;
     }
     const Triangle& t = triangles_[nearest];
@@ -164,22 +142,21 @@ void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::ui
     const Vec4f normal = (x[t[1]] - x[t[0]]).cross3(x[t[2]] - x[t[0]]);
     const float height = (p - x[t[0]]).dot(normal) / std::max(normal.norm(), 1e-12f);
     constexpr float kSlant = 0.5f;
-    if (std::abs(height) < kSlant * std::sqrt(least) && met_[vertex] == kNobody) {
+    if (std::abs(height) < kSlant * std::sqrt(least) && met_[slot] == kNobody) {
         return; // beside the end of a sheet: on neither side of it
     }
-    if (mine.layer != theirs.layer) {
-        side_[vertex] = mine.layer > theirs.layer ? 1.0f : -1.0f;
-    } else if (met_[vertex] == kNobody ||
-               !same_piece(vertices_[triangles_[met_[vertex]][0]], vertices_[t[0]])) {
-        side_[vertex] = height >= 0.0f ? 1.0f : -1.0f;
+    if (layered(x, vertex, other)) {
+        side_[slot] = mine.layer > theirs.layer ? 1.0f : -1.0f;
+    } else if (met_[slot] == kNobody || !same_sheet(x, met_[slot], nearest)) {
+        side_[slot] = height >= 0.0f ? 1.0f : -1.0f;
     }
-    met_[vertex] = nearest;
+    met_[slot] = nearest;
     constexpr float kAir = 0.001f; // m, beyond half of both thicknesses
     const float gap = 0.5f * (mine.thickness + theirs.thickness) + kAir;
     contacts_.push_back({vertex,
                          {t[0], t[1], t[2]},
                          {place[0], place[1], place[2]},
-                         side_[vertex],
+                         side_[slot],
                          std::min(gap, reach_),
                          std::max(mine.friction, theirs.friction)});
 }
@@ -188,14 +165,15 @@ void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::ui
 void ClothContacts::untangle() noexcept {
     for (Contact& contact : contacts_) {
         const Vertex& there = vertices_[contact.corner[0]];
+        const std::size_t kind = slot_of(contact.vertex, contact.corner[0]) - contact.vertex;
         int same = 0;
         int opposite = 0;
         for (std::uint32_t s = star_first_[contact.vertex]; s < star_first_[contact.vertex + 1];
              ++s) {
             for (const std::uint32_t v : triangles_[star_[s]]) {
-                if (v != contact.vertex && met_[v] != kNobody &&
-                    same_piece(vertices_[triangles_[met_[v]][0]], there)) {
-                    ++(side_[v] == contact.side ? same : opposite);
+                if (v != contact.vertex && met_[kind + v] != kNobody &&
+                    same_piece(vertices_[triangles_[met_[kind + v]][0]], there)) {
+                    ++(side_[kind + v] == contact.side ? same : opposite);
                 }
             }
         }
@@ -203,30 +181,22 @@ void ClothContacts::untangle() noexcept {
         contact.side = opposite > 2 * same + kFew ? -contact.side : contact.side;
     }
     for (const Contact& contact : contacts_) {
-        side_[contact.vertex] = contact.side;
+        side_[slot_of(contact.vertex, contact.corner[0])] = contact.side;
     }
 }
 
-void ClothContacts::find(std::span<const Vec4f> x, std::span<const Vec4f> v, float seconds,
-                         std::uint32_t frame) noexcept {
-    constexpr std::uint32_t kTurns = 3;
+void ClothContacts::find(std::span<Vec4f> x, std::span<const Vec4f> v, float seconds) noexcept {
     contacts_.clear();
-    sort_into_cells(x);
-    for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
-        if (vertices_[i].part == kNobody || vertices_[i].weight <= 0.0f) {
-            continue;
+    tree_.find(x, radius_, nearest_);
+    part_tangles(x);
+    const std::size_t rows = vertices_.size();
+    for (std::size_t slot = 0; slot < 2 * rows; ++slot) {
+        const auto i = static_cast<std::uint32_t>(slot < rows ? slot : slot - rows);
+        if (nearest_[slot] == kNobody) {
+            met_[slot] = kNobody;
+        } else if (vertices_[i].weight > 0.0f && tangled_[i] == 0) {
+            meet(x, i, nearest_[slot], std::min(reach_ + v[i].norm() * seconds, radius_));
         }
-        const float way = v[i].norm() * seconds;
-        const bool slow = kTurns * way < 0.5f * reach_;
-        if (met_[i] == kNobody && slow && (i + frame) % kTurns != 0) {
-            continue;
-        }
-        const std::uint32_t other = nearest_other(x, i);
-        if (other == kNobody) {
-            met_[i] = kNobody;
-            continue;
-        }
-        meet(x, i, other, std::min(reach_ + way, radius_));
     }
     untangle();
 }

@@ -2,10 +2,7 @@
 // of another sheet, or of a part of its own that is far away along the cloth.
 #pragma once
 
-#include "core/types.h"
-
-#include <span>
-#include <vector>
+#include "cloth/cloth_tree.h"
 
 namespace toile::cloth {
 
@@ -32,10 +29,9 @@ class ClothContacts {
     /// Forgets who is near whom.
     void reset() noexcept;
 
-    /// Finds who is near or, at velocity v, will be within `seconds`; (rows) each. `frame` counts
-    /// calls: a slow vertex that is near nobody looks on every third.
-    void find(std::span<const Vec4f> x, std::span<const Vec4f> v, float seconds,
-              std::uint32_t frame) noexcept;
+    /// Finds who is near or, at velocity v, will be within `seconds`; (rows) each. Moves those a
+    /// little whose edges pass through a triangle.
+    void find(std::span<Vec4f> x, std::span<const Vec4f> v, float seconds) noexcept;
     /// Keeps them apart, with friction against the motion since q; (rows) each. What parts them is
     /// no reason to fly off: it is taken from q too. Who is deeper than the reach is let pass.
     void resolve(std::span<Vec4f> x, std::span<Vec4f> q) const noexcept;
@@ -43,7 +39,7 @@ class ClothContacts {
     [[nodiscard]] std::size_t contact_count() const noexcept { return contacts_.size(); }
 
   private:
-    static constexpr std::uint32_t kNobody = 0xffffffffu;
+    static constexpr std::uint32_t kNobody = ClothTree::kNobody;
     struct Vertex {
         Vec3f start = Vec3f::Zero();
         float weight = 0.0f; ///< 1/kg
@@ -56,13 +52,23 @@ class ClothContacts {
         float side, gap, friction; ///< +1 over the triangle, -1 beneath; m; Coulomb
     };
 
-    void sort_into_cells(std::span<const Vec4f> x) noexcept;
-    [[nodiscard]] std::uint32_t cell_of(int cx, int cy, int cz) const noexcept;
-    [[nodiscard]] std::uint32_t nearest_other(std::span<const Vec4f> x,
-                                              std::uint32_t vertex) const noexcept;
+    [[nodiscard]] bool same_sheet(std::span<const Vec4f> x, std::uint32_t first,
+                                  std::uint32_t second) const noexcept;
+    [[nodiscard]] std::size_t slot_of(std::uint32_t vertex, std::uint32_t other) const noexcept {
+        const bool own = vertices_[vertex].part == vertices_[other].part;
+        return own ? vertex : vertices_.size() + vertex;
+    }
     void meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other,
               float reach) noexcept;
     void untangle() noexcept;
+    [[nodiscard]] Vec4f normal_of(std::span<const Vec4f> x, std::uint32_t vertex) const noexcept;
+    /// Do two vertices lie in layers that are worn one over the other here?
+    [[nodiscard]] bool layered(std::span<const Vec4f> x, std::uint32_t a,
+                               std::uint32_t b) const noexcept;
+    [[nodiscard]] Vec4f way_out(std::span<const Vec4f> x, std::uint32_t a, std::uint32_t b,
+                                const Vec4f& normal) const noexcept;
+    void part(std::span<Vec4f> x, std::uint32_t a, std::uint32_t b, const Triangle& t) noexcept;
+    void part_tangles(std::span<Vec4f> x) noexcept;
     [[nodiscard]] bool same_piece(const Vertex& a, const Vertex& b) const noexcept {
         return a.part == b.part && (a.start - b.start).squaredNorm() < a.apart * a.apart;
     }
@@ -71,13 +77,15 @@ class ClothContacts {
     std::vector<Vertex> vertices_;                 ///< (rows)
     std::vector<Triangle> triangles_;              ///< of all parts, by rows
     std::vector<std::uint32_t> star_first_, star_; ///< triangles at each row
-    std::vector<std::uint32_t> met_;               ///< (rows) triangle met, or kNobody
-    std::vector<float> side_;                      ///< (rows) of that triangle; 0: none
-    std::vector<std::uint32_t> cell_first_, cell_rows_;
-    std::vector<std::uint32_t> cell_; ///< (rows)
-    std::vector<Contact> contacts_;   ///< capacity (rows)
-    float reach_ = 0.0f;              ///< m, between surfaces
-    float radius_ = 0.0f;             ///< m, between vertices; also the size of a cell
+    /// A vertex may meet one triangle of its own garment and one of another: slots (2 rows).
+    std::vector<std::uint32_t> met_;    ///< (slots) triangle met, or kNobody
+    std::vector<float> side_;           ///< (slots) of that triangle; 0: none
+    std::vector<std::uint8_t> tangled_; ///< (rows) 1: at a passage of an edge through a triangle
+    ClothTree tree_;
+    std::vector<std::uint32_t> nearest_; ///< (slots) vertex of another piece, or kNobody
+    std::vector<Contact> contacts_;      ///< capacity (slots)
+    float reach_ = 0.0f;                 ///< m, between surfaces
+    float radius_ = 0.0f;                ///< m, between vertices
 };
 
 } // namespace toile::cloth

@@ -65,6 +65,18 @@ void check(const ClothMesh& mesh, const Fabric& fabric) {
     }
 }
 
+void check_areas(const ClothMesh& mesh) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const std::array<Vec2f, 3> corner = material_corners(mesh, t);
+        const Vec2f u = corner[1] - corner[0];
+        const Vec2f v = corner[2] - corner[0];
+        if (!(std::abs(u.x() * v.y() - v.x() * u.y()) > 2e-10f)) {
+            throw Error("garment mesh: triangle " + std::to_string(t) +
+                        " has no area in its material coordinates");
+        }
+    }
+}
+
 std::array<Vec2f, 3> material_corners(const ClothMesh& mesh, std::size_t t) {
     if (!mesh.corner_coords.empty()) {
         return {mesh.corner_coords[3 * t], mesh.corner_coords[3 * t + 1],

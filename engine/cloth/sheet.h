@@ -33,6 +33,9 @@ struct ClothMesh {
 /// without mass or stiffness
 void check(const ClothMesh& mesh, const Fabric& fabric);
 
+/// \throw Error for a triangle without area in its material coordinates
+void check_areas(const ClothMesh& mesh);
+
 /// The three corners of a triangle in the plane of its material: u weft, v warp, metres.
 [[nodiscard]] std::array<Vec2f, 3> material_corners(const ClothMesh& mesh, std::size_t triangle);
 

@@ -32,6 +32,46 @@ inline Crossing cross(const Vec4& from, const Vec4& up, const Triangle& corner,
     return {rise.dot(area) / facing, {u, v, w}, u >= 0.0f && v >= 0.0f && w >= 0.0f};
 }
 
+using Skin = std::array<std::uint32_t, SkinCover::kMostSkin>;
+
+/// After the corners of a body triangle those across its sides. \return how many there are then
+std::size_t add_across(const MovingBody& body, std::uint32_t under, Skin& skin) {
+    std::size_t count = 3;
+    for (std::size_t side = 0; side < 3; ++side) {
+        const std::uint32_t next = body.across(under, side);
+        if (next == kNone) {
+            continue;
+        }
+        const Triangle& beside = body.triangles()[next];
+        const auto fresh = std::find_if(beside.begin(), beside.end(), [&](std::uint32_t b) {
+            return std::find(skin.begin(), skin.begin() + 3, b) == skin.begin() + 3;
+        });
+        if (fresh != beside.end()) {
+            skin[count++] = *fresh;
+        }
+    }
+    return count;
+}
+
+/// After the corners of the body triangle under one vertex those under the other two.
+std::size_t add_corners(const MovingBody& body, const BodyContacts& contacts,
+                        const Triangle& corner, Skin& skin) {
+    std::size_t count = 3;
+    for (std::size_t k = 1; k < 3; ++k) {
+        const std::uint32_t under = contacts.own_triangle(corner[k]);
+        if (under == kNone || under == contacts.own_triangle(corner[0])) {
+            continue;
+        }
+        for (const std::uint32_t b : body.triangles()[under]) {
+            const auto end = skin.begin() + std::ptrdiff_t(count);
+            if (std::find(skin.begin(), end, b) == end) {
+                skin[count++] = b;
+            }
+        }
+    }
+    return count;
+}
+
 } // namespace
 
 void SkinCover::find(const MovingBody& body, const BodyContacts& contacts, std::span<const Vec4> x,
@@ -40,7 +80,8 @@ void SkinCover::find(const MovingBody& body, const BodyContacts& contacts, std::
     const std::span<const Triangle> triangles = contacts.triangles();
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         const Triangle& corner = triangles[t];
-        const std::uint32_t under = contacts.own_triangle(x.size() + t);
+        const std::uint32_t under =
+            contacts.own_triangle(contacts.has_centres() ? x.size() + t : corner[0]);
         if (under == kNone) {
             continue;
         }
@@ -50,22 +91,21 @@ void SkinCover::find(const MovingBody& body, const BodyContacts& contacts, std::
         if (above > 2.0f * close) {
             continue;
         }
+        float radius2 = 0.0f;
+        for (const std::uint32_t v : corner) {
+            radius2 = std::max(radius2, (x[v] - centre).squaredNorm());
+        }
         std::array<std::uint32_t, kMostSkin> skin{below[0], below[1], below[2]};
-        std::size_t count = 3;
-        for (std::size_t side = 0; side < 3; ++side) {
-            const std::uint32_t next = body.across(under, side);
-            if (next == kNone) {
+        const std::size_t count = contacts.has_centres()
+                                      ? add_across(body, under, skin)
+                                      : add_corners(body, contacts, corner, skin);
+        for (std::size_t k = 0; k < count; ++k) {
+            // Its line along its normal meets nothing where it passes all corners by.
+            const Vec4 rise = centre - body.positions()[skin[k]];
+            const float along = rise.dot(body.normals()[skin[k]]);
+            if (rise.squaredNorm() - along * along > 1.01f * radius2) {
                 continue;
             }
-            const Triangle& beside = body.triangles()[next];
-            const auto fresh = std::find_if(beside.begin(), beside.end(), [&](std::uint32_t b) {
-                return std::find(below.begin(), below.end(), b) == below.end();
-            });
-            if (fresh != beside.end()) {
-                skin[count++] = *fresh;
-            }
-        }
-        for (std::size_t k = 0; k < count; ++k) {
             const Crossing found =
                 cross(body.positions()[skin[k]], body.normals()[skin[k]], corner, x);
             if (found.inside && found.height < close && found.height > kDeepest) {

@@ -8,6 +8,9 @@ namespace toile::cloth {
 /// Pairs of a garment triangle and a body vertex under it.
 class SkinCover {
   public:
+    /// Of a triangle: the corners of three body triangles, or of one and those across its sides.
+    static constexpr std::size_t kMostSkin = 9;
+
     /// Capacity for a garment of so many triangles.
     explicit SkinCover(std::size_t triangle_count) { pairs_.reserve(kMostSkin * triangle_count); }
 
@@ -20,7 +23,6 @@ class SkinCover {
               std::span<const float> inverse_mass) const noexcept;
 
   private:
-    static constexpr std::size_t kMostSkin = 6; ///< a triangle's corners and those across its sides
     struct Pair {
         std::uint32_t triangle, skin;
     };

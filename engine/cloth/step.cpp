@@ -100,16 +100,18 @@ StepResult check_step(const StepInput& input, std::size_t body_vertices,
 }
 
 void write_frame(std::span<const Vec4f> positions, std::span<const Triangle> triangles,
-                 const GarmentFrame& frame) noexcept {
+                 const GarmentFrame& frame, std::span<const std::uint32_t> vertex) noexcept {
+    const auto place = [&](std::size_t row) { return vertex.empty() ? row : vertex[row]; };
     for (std::size_t v = 0; v < positions.size(); ++v) {
-        frame.positions[v] = positions[v].head<3>();
+        frame.positions[place(v)] = positions[v].head<3>();
     }
     std::fill(frame.normals.begin(), frame.normals.end(), Vec3f::Zero());
     for (const Triangle& corner : triangles) {
-        const Vec3f a = frame.positions[corner[0]];
-        const Vec3f area = (frame.positions[corner[1]] - a).cross(frame.positions[corner[2]] - a);
+        const Vec3f a = positions[corner[0]].head<3>();
+        const Vec3f area =
+            (positions[corner[1]].head<3>() - a).cross(positions[corner[2]].head<3>() - a);
         for (const std::uint32_t v : corner) {
-            frame.normals[v] += area;
+            frame.normals[place(v)] += area;
         }
     }
     for (Vec3f& normal : frame.normals) {

@@ -49,8 +49,9 @@ struct KnownGarment {
 [[nodiscard]] StepResult check_step(const StepInput& input, std::size_t body_vertices,
                                     std::span<const KnownGarment> known) noexcept;
 
-/// Copies a garment's vertices out, with unit normals from the areas around each.
+/// Copies a garment's vertices out, with unit normals from the areas around each. Row r is vertex
+/// `vertex[r]` of the frame; (nv), or empty: they are in the frame's order.
 void write_frame(std::span<const Vec4f> positions, std::span<const Triangle> triangles,
-                 const GarmentFrame& frame) noexcept;
+                 const GarmentFrame& frame, std::span<const std::uint32_t> vertex = {}) noexcept;
 
 } // namespace toile::cloth

@@ -89,7 +89,7 @@ std::vector<cloth::MaterialPath> material_paths(const ClothMesh& mesh) {
 
 Bending::Bending(const ClothMesh& mesh, const Fabric& fabric, std::span<const float> inverse_mass) {
     const std::vector<Side> sides = sorted_sides(mesh, fabric);
-    std::vector<Hinge> hinges;
+    std::vector<Hinge<std::uint32_t>> hinges;
     std::vector<Softness> softness;
     std::vector<std::uint32_t> corners;
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
@@ -100,12 +100,14 @@ Bending::Bending(const ClothMesh& mesh, const Fabric& fabric, std::span<const fl
         if (!first || !same_edge(p, q) || p.opposite == q.opposite || !(rigidity > 0.0f)) {
             continue;
         }
-        Hinge hinge{{p.a, p.b, p.opposite, q.opposite},
-                    {p.cot_b + q.cot_b, p.cot_a + q.cot_a, -p.cot_a - p.cot_b, -q.cot_a - q.cot_b},
-                    {}};
-        Softness soft{{}, (p.area + q.area) / rigidity};
-        for (std::size_t k = 0; k < 4; ++k) {
-            soft.mass[k] = inverse_mass[hinge.vertex[k]];
+        const Hinge<std::uint32_t> hinge{
+            {p.a, p.b, p.opposite, q.opposite},
+            {p.cot_a + q.cot_a, -p.cot_a - p.cot_b, -q.cot_a - q.cot_b},
+            0.0f};
+        const float k0 = -(hinge.k[0] + hinge.k[1] + hinge.k[2]);
+        Softness soft{inverse_mass[p.a] * k0 * k0, (p.area + q.area) / rigidity};
+        for (std::size_t k = 1; k < 4; ++k) {
+            soft.sum += inverse_mass[hinge.vertex[k]] * hinge.k[k - 1] * hinge.k[k - 1];
         }
         hinges.push_back(hinge);
         softness.push_back(soft);
@@ -113,8 +115,16 @@ Bending::Bending(const ClothMesh& mesh, const Fabric& fabric, std::span<const fl
     }
     // One after another shares no vertex, so that the processor need not wait.
     for (const std::uint32_t c : coloured_order(corners, 4, inverse_mass.size(), 1)) {
-        hinges_.push_back(hinges[c]);
+        const Hinge<std::uint32_t>& h = hinges[c];
         softness_.push_back(softness[c]);
+        if (inverse_mass.size() >= kSmallRows) {
+            large_.push_back(h);
+            continue;
+        }
+        small_.push_back({{SmallIndex(h.vertex[0]), SmallIndex(h.vertex[1]),
+                           SmallIndex(h.vertex[2]), SmallIndex(h.vertex[3])},
+                          {h.k[0], h.k[1], h.k[2]},
+                          0.0f});
     }
 }
 
@@ -123,31 +133,44 @@ void Bending::set_substep(float seconds) noexcept {
         return;
     }
     substep_ = seconds;
-    for (std::size_t i = 0; i < hinges_.size(); ++i) {
-        Hinge& hinge = hinges_[i];
-        const Softness& soft = softness_[i];
-        float sum = soft.compliance / (seconds * seconds);
-        for (std::size_t k = 0; k < 4; ++k) {
-            sum += soft.mass[k] * hinge.k[k] * hinge.k[k];
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            hinge.step[k] = soft.mass[k] * hinge.k[k] / sum;
-        }
+    for (std::size_t i = 0; i < softness_.size(); ++i) {
+        const float step =
+            1.0f / (softness_[i].sum + softness_[i].compliance / (seconds * seconds));
+        (large_.empty() ? small_[i].step : large_[i].step) = step;
+    }
+}
+
+template <class Index>
+[[gnu::always_inline]] inline void Bending::solve_hinge(const Hinge<Index>& hinge,
+                                                        Vec4f* x) noexcept {
+    __m128 p[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+        p[i] = _mm_load_ps(x[hinge.vertex[i]].data());
+    }
+    const __m128 k1 = _mm_set1_ps(hinge.k[0]);
+    const __m128 k2 = _mm_set1_ps(hinge.k[1]);
+    const __m128 k3 = _mm_set1_ps(hinge.k[2]);
+    const __m128 k[4] = {_mm_sub_ps(_mm_setzero_ps(), _mm_add_ps(_mm_add_ps(k1, k2), k3)), k1, k2,
+                         k3};
+    __m128 c = _mm_mul_ps(k[0], p[0]);
+    for (std::size_t i = 1; i < 4; ++i) {
+        c = _mm_fmadd_ps(k[i], p[i], c);
+    }
+    c = _mm_blend_ps(_mm_mul_ps(_mm_set1_ps(hinge.step), c), _mm_setzero_ps(), 8); // masses stay
+    for (std::size_t i = 0; i < 4; ++i) {
+        const __m128 weight = _mm_permute_ps(p[i], 0xff);
+        _mm_store_ps(x[hinge.vertex[i]].data(), _mm_fnmadd_ps(_mm_mul_ps(weight, k[i]), c, p[i]));
     }
 }
 
 void Bending::solve(std::span<Vec4f> x) const noexcept {
-    for (const Hinge& hinge : hinges_) {
-        __m128 c = _mm_setzero_ps();
-        __m128 p[4];
-        for (std::size_t k = 0; k < 4; ++k) {
-            p[k] = _mm_load_ps(x[hinge.vertex[k]].data());
-            c = _mm_fmadd_ps(_mm_set1_ps(hinge.k[k]), p[k], c);
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            _mm_store_ps(x[hinge.vertex[k]].data(),
-                         _mm_fnmadd_ps(_mm_set1_ps(hinge.step[k]), c, p[k]));
-        }
+    for (const Hinge<SmallIndex>& hinge : small_) {
+        cloth::read_ahead(hinge);
+        solve_hinge(hinge, x.data());
+    }
+    for (const Hinge<std::uint32_t>& hinge : large_) {
+        cloth::read_ahead(hinge);
+        solve_hinge(hinge, x.data());
     }
 }
 

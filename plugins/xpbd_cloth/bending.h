@@ -20,22 +20,27 @@ class Bending {
     Bending(const ClothMesh& mesh, const Fabric& fabric, std::span<const float> inverse_mass);
 
     void set_substep(float seconds) noexcept;
-    /// One pass. `x` (nv or more)
+    /// One pass over the rows of membrane.h.
     void solve(std::span<Vec4f> x) const noexcept;
 
-    [[nodiscard]] std::size_t hinge_count() const noexcept { return hinges_.size(); }
+    [[nodiscard]] std::size_t hinge_count() const noexcept { return softness_.size(); }
 
   private:
+    template <class Index>
     struct Hinge {
-        std::uint32_t vertex[4]; ///< the edge's ends, then those opposite
-        float k[4];
-        float step[4]; ///< w_i k_i / (sum of w k^2 + compliance / h^2)
+        Index vertex[4]; ///< the edge's ends, then those opposite
+        float k[3];      ///< of all but the first; all four sum to 0
+        float step;      ///< 1 / (sum of w k^2 + compliance / h^2)
     };
     struct Softness {
-        float mass[4];    ///< 1/kg
+        float sum;        ///< of w k^2, 1/kg
         float compliance; ///< 1/(N m)
     };
-    std::vector<Hinge> hinges_;
+    template <class Index>
+    static void solve_hinge(const Hinge<Index>& hinge, Vec4f* x) noexcept;
+
+    std::vector<Hinge<SmallIndex>> small_;
+    std::vector<Hinge<std::uint32_t>> large_;
     std::vector<Softness> softness_; ///< of each hinge
     float substep_ = 0.0f;
 };

@@ -9,9 +9,6 @@
 namespace toile::xpbd_cloth {
 namespace {
 
-/// How many substeps share one pass of the fabric's damping.
-constexpr std::uint32_t kDampEvery = 4;
-
 std::uint32_t rounds(double dt_s, double rate) {
     return static_cast<std::uint32_t>(std::max(1.0, std::round(dt_s * rate)));
 }
@@ -117,7 +114,8 @@ StepResult ClothWorld::step(const StepInput& input) noexcept {
             result = StepResult::recovered;
         }
         entry.cloth.clean_up(*body_, since_last);
-        cloth::write_frame(entry.cloth.positions(), entry.cloth.triangles(), frame);
+        cloth::write_frame(entry.cloth.positions(), entry.cloth.triangles(), frame,
+                           entry.cloth.vertices());
     }
     return result;
 }
@@ -137,20 +135,25 @@ float ClothWorld::simulate(double dt_s, std::uint32_t substeps) noexcept {
             entry.cloth.find_contacts(*body_, interval);
         }
         if (settings_.self_contact > 0.0) {
-            cloth_contacts_.find(x_, v_, interval.length(), frame_);
+            cloth_contacts_.find(x_, v_, interval.length());
         }
-        for (std::uint32_t s = 1; s <= interval.substeps; ++s) {
-            const float fraction = share * static_cast<float>(done + s);
-            const float since = static_cast<float>(s) * substep - last_half;
+        for (std::uint32_t s = done; s < end; ++s) {
+            const Substep now{s,
+                              s + 1 == substeps,
+                              s + 1 == end,
+                              substep,
+                              share * static_cast<float>(s + 1),
+                              share,
+                              static_cast<float>(s + 1 - done) * substep - last_half};
             for (Entry& entry : garments_) {
-                entry.cloth.move(fraction, share, substep);
+                entry.cloth.move(now);
             }
             if (settings_.self_contact > 0.0) {
                 cloth_contacts_.resolve(x_, q_);
             }
             for (Entry& entry : garments_) {
-                entry.cloth.meet_body(since, substep);
-                entry.cloth.update_velocities(substep, (done + s) % kDampEvery == 0);
+                entry.cloth.meet_body(now);
+                entry.cloth.update_velocities(now);
             }
         }
         done = end;

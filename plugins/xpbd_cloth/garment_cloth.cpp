@@ -4,12 +4,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace toile::xpbd_cloth {
 namespace {
 
+// What need not be done in every substep: one pass serves so many.
+constexpr float kBendPeriod = 0.0021f; // s; a fold is slower than a pull
+constexpr std::uint32_t kBendLeast = 2, kBendMost = 2;
+constexpr std::uint32_t kDampEvery = 4;
+constexpr float kCentreEdge = 0.015f;      // m, shorter edges need no contact at triangle centres
+constexpr std::uint32_t kCentresEvery = 4; ///< between its corners cloth hardly sags into the body
+
+constexpr float kHard = std::numeric_limits<float>::infinity(); // N/m
+
 Vec4 to_vec4(const Vec3f& p) {
     return {p.x(), p.y(), p.z(), 0.0f};
+}
+
+/// Of what moved from q to x.
+[[gnu::always_inline]] inline Vec4 velocity(const Vec4& x, const Vec4& q, float per_second) {
+    constexpr float kFastest = 30.0f; // m/s
+    const Vec4 v = per_second * (x - q);
+    const float squared = v.squaredNorm();
+    return squared > kFastest * kFastest ? Vec4((kFastest / std::sqrt(squared)) * v) : v;
 }
 
 /// (nv) kg, lumped; vertices of no triangle get the mean.
@@ -39,10 +57,9 @@ std::vector<float> lumped_masses(const ClothMesh& mesh, const Fabric& fabric) {
 
 std::vector<Link> seam_links(const GarmentInput& input) {
     std::vector<Link> links;
-    const float stiffness = 0.5f * (input.fabric.stretch_warp + input.fabric.stretch_weft);
     for (const auto& seam : input.mesh.seams) {
         if (seam[0] != seam[1]) {
-            links.push_back({seam[0], seam[1], 0.0f, stiffness});
+            links.push_back({seam[0], seam[1], 0.0f});
         }
     }
     return links;
@@ -60,11 +77,11 @@ std::vector<Link> length_limits(const ClothMesh& mesh, float mean_edge, const Se
         for (const cloth::LengthLimit& limit :
              cloth::make_length_limits(mesh.positions.size(), material_paths(mesh),
                                        static_cast<float>(settings.limit_edges) * mean_edge)) {
-            links.push_back({limit.a, limit.b, longest * limit.longest, 0.0f});
+            links.push_back({limit.a, limit.b, longest * limit.longest});
         }
     }
     for (const Edge& edge : material_edges(mesh)) {
-        links.push_back({edge.a, edge.b, longest * edge.rest, 0.0f});
+        links.push_back({edge.a, edge.b, longest * edge.rest});
     }
     return links;
 }
@@ -75,8 +92,22 @@ std::vector<Link> border_limits(const ClothMesh& mesh, float strain_limit) {
     std::vector<Link> links;
     for (const Edge& edge : material_edges(mesh)) {
         if (edge.border && strain_limit > 0.0f) {
-            links.push_back({edge.a, edge.b, (1.0f + strain_limit) * edge.rest, 0.0f});
+            links.push_back({edge.a, edge.b, (1.0f + strain_limit) * edge.rest});
         }
+    }
+    return links;
+}
+
+/// What friction on the skin held in the substeps and still is too long is drawn in at the end.
+std::vector<Link> edge_limits(const ClothMesh& mesh, const Settings& settings) {
+    constexpr float kSlack = 0.05f;
+    std::vector<Link> links;
+    if (settings.strain_limit <= 0.0) {
+        return links;
+    }
+    for (const Edge& edge : material_edges(mesh)) {
+        links.push_back({edge.a, edge.b,
+                         (1.0f + kSlack + static_cast<float>(settings.strain_limit)) * edge.rest});
     }
     return links;
 }
@@ -92,45 +123,65 @@ float mean_length(const ClothMesh& mesh) {
 
 } // namespace
 
-GarmentCloth::GarmentCloth(const GarmentInput& input, const MovingBody& rest_body,
+GarmentCloth::GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest_body,
                            const Settings& settings)
-    : settings_(settings), fabric_(input.fabric), layer_(input.layer),
-      contact_(cloth::contact_settings(input, static_cast<float>(settings.margin),
+    : settings_(settings), fabric_(ordered.input().fabric), layer_(ordered.input().layer),
+      contact_(cloth::contact_settings(ordered.input(), static_cast<float>(settings.margin),
                                        static_cast<float>(settings.friction_scale))),
-      start_(input.mesh.positions.begin(), input.mesh.positions.end()),
-      attachment_(cloth::attachments(input)), mass_(lumped_masses(input.mesh, input.fabric)),
-      inverse_mass_(cloth::inverse_masses(mass_, attachment_)), mean_edge_(mean_length(input.mesh)),
-      membrane_(input.mesh, input.fabric, inverse_mass_),
-      bending_(input.mesh, input.fabric, inverse_mass_),
-      seams_(seam_links(input), inverse_mass_, false),
-      limits_(length_limits(input.mesh, mean_edge_, settings), inverse_mass_, true),
-      borders_(border_limits(input.mesh, static_cast<float>(settings.strain_limit)), inverse_mass_,
-               true),
-      damping_(material_edges(input.mesh), inverse_mass_),
-      contacts_(input.mesh.triangles, start_.size(), input.joints, input.weights),
-      cover_(input.mesh.triangles.size()) {
+      vertex_(ordered.vertex),
+      start_(ordered.input().mesh.positions.begin(), ordered.input().mesh.positions.end()),
+      attachment_(cloth::attachments(ordered.input())),
+      mass_(lumped_masses(ordered.input().mesh, fabric_)),
+      inverse_mass_(cloth::inverse_masses(mass_, attachment_)),
+      mean_edge_(mean_length(ordered.input().mesh)), membrane_(ordered.input().mesh, fabric_),
+      bending_(ordered.input().mesh, fabric_, inverse_mass_),
+      seams_(seam_links(ordered.input()), start_.size(),
+             0.5f * (fabric_.stretch_warp + fabric_.stretch_weft), false),
+      limits_(length_limits(ordered.input().mesh, mean_edge_, settings), start_.size(), kHard,
+              true),
+      borders_(border_limits(ordered.input().mesh, static_cast<float>(settings.strain_limit)),
+               start_.size(), kHard, true),
+      last_limits_(edge_limits(ordered.input().mesh, settings), start_.size(), kHard, true),
+      damping_(material_edges(ordered.input().mesh), inverse_mass_),
+      contacts_(ordered.input().mesh.triangles, start_.size(), ordered.input().joints,
+                ordered.input().weights, mean_edge_ > kCentreEdge),
+      cover_(ordered.input().mesh.triangles.size()) {
     contacts_.bind(rest_body, start_);
+    for (std::uint32_t v = 0; v < start_.size(); ++v) {
+        if (inverse_mass_[v] <= 0.0f) {
+            held_.push_back(v);
+            continue;
+        }
+        free_.push_back(v);
+        if (attachment_[v] > 0.0f) {
+            pulled_.push_back(v);
+        }
+    }
+    leashed_.reserve(free_.size());
     for (std::vector<Vec4>* buffer : {&target_before_, &target_after_}) {
         buffer->resize(start_.size());
         std::transform(start_.begin(), start_.end(), buffer->begin(), to_vec4);
     }
 }
 
+/// On finer cloth a pull may go slower: the limits over several edges carry more of its way.
 double GarmentCloth::substep_rate() const noexcept {
-    return settings_.substep_rate > 0.0
-               ? settings_.substep_rate
-               : std::clamp(settings_.wave_speed / static_cast<double>(mean_edge_), 480.0, 6000.0);
+    constexpr double kUsual = 0.02; // m
+    const double finer = std::pow(static_cast<double>(mean_edge_) / kUsual, 0.4);
+    const double rate = settings_.wave_speed * finer / static_cast<double>(mean_edge_);
+    return settings_.substep_rate > 0.0 ? settings_.substep_rate : std::clamp(rate, 480.0, 6000.0);
 }
 
 void GarmentCloth::begin_step(std::span<const Vec3f> targets, float substep) noexcept {
     target_before_.swap(target_after_);
-    std::transform(targets.begin(), targets.end(), target_after_.begin(), to_vec4);
+    std::transform(vertex_.begin(), vertex_.end(), target_after_.begin(),
+                   [&](std::uint32_t v) { return to_vec4(targets[v]); });
     if (substep > 0.0f) {
         membrane_.set_substep(substep);
-        bending_.set_substep(2.0f * substep); // a pass serves two
+        bend_every_ = static_cast<std::uint32_t>(
+            std::clamp(std::round(kBendPeriod / substep), float(kBendLeast), float(kBendMost)));
+        bending_.set_substep(static_cast<float>(bend_every_) * substep);
         seams_.set_substep(substep);
-        limits_.set_substep(substep);
-        borders_.set_substep(substep);
     }
 }
 
@@ -140,7 +191,7 @@ void GarmentCloth::reset() noexcept {
     std::copy(target_after_.begin(), target_after_.end(), rows_.q.begin());
     std::fill(rows_.v.begin(), rows_.v.end(), Vec4::Zero());
     since_damped_ = 0.0f;
-    bends_ = true;
+    velocities_known_ = true;
     contacts_.reset();
 }
 
@@ -148,6 +199,9 @@ void GarmentCloth::find_contacts(const MovingBody& body, const Interval& interva
     const float half = 0.5f * interval.length();
     // The last refresh stood at the end of the last frame or in the middle of the last interval.
     const float since_last = interval.index == 0 ? half : 2.0f * half;
+    if (interval.index == 0) {
+        find_stretched_leashes();
+    }
     period_ = interval.length() * static_cast<float>(interval.of);
     const std::size_t count = start_.size();
     contacts_.refresh(
@@ -156,84 +210,109 @@ void GarmentCloth::find_contacts(const MovingBody& body, const Interval& interva
         contact_);
 }
 
-void GarmentCloth::move(float fraction, float share, float substep) noexcept {
-    predict(fraction, substep);
-    if (bends_) {
+void GarmentCloth::move(const Substep& now) noexcept {
+    predict(now);
+    if (now.index % bend_every_ == 0) {
         bending_.solve(rows_.x);
     }
-    bends_ = !bends_;
     seams_.solve(rows_.x);
     membrane_.solve(rows_.x);
     limits_.solve(rows_.x);
     for (int pass = 0; pass < static_cast<int>(settings_.border_passes); ++pass) {
         borders_.solve(rows_.x);
     }
-    follow_targets(fraction, share, substep);
+    unweigh();
+    follow_targets(now);
+    hold_on_leash(now.last ? free_ : leashed_, now.fraction);
 }
 
-void GarmentCloth::predict(float fraction, float substep) noexcept {
-    const Vec4 fall(0.0f, static_cast<float>(-settings_.gravity) * substep, 0.0f, 0.0f);
-    const float keep = 1.0f / (1.0f + static_cast<float>(settings_.air_drag) * substep);
+/// Velocities are written down only where something reads them before the next substep.
+void GarmentCloth::predict(const Substep& now) noexcept {
+    const Vec4 fall(0.0f, static_cast<float>(-settings_.gravity) * now.length, 0.0f, 0.0f);
+    const float keep = now.length / (1.0f + static_cast<float>(settings_.air_drag) * now.length);
+    const float per_second = 1.0f / now.length;
     for (std::size_t i = 0; i < start_.size(); ++i) {
-        rows_.q[i] = rows_.x[i];
-        if (inverse_mass_[i] > 0.0f) {
-            rows_.x[i] += substep * keep * (rows_.v[i] + fall);
-        } else {
-            rows_.x[i] = target(i, fraction);
-        }
+        Vec4 x = rows_.x[i];
+        const Vec4 v = velocities_known_ ? rows_.v[i] : velocity(x, rows_.q[i], per_second);
+        rows_.q[i] = x;
+        x += keep * (v + fall);
+        x.w() = inverse_mass_[i];
+        rows_.x[i] = x;
+    }
+    for (const std::uint32_t i : held_) {
+        rows_.x[i] = target(i, now.fraction); // of weight 0
     }
 }
 
-/// A damped implicit spring where the cloth is partly attached, and the leash everywhere.
-void GarmentCloth::follow_targets(float fraction, float share, float substep) noexcept {
+void GarmentCloth::weigh() noexcept {
     for (std::size_t i = 0; i < start_.size(); ++i) {
-        if (inverse_mass_[i] <= 0.0f) {
-            continue;
-        }
-        Vec4& x = rows_.x[i];
+        rows_.x[i].w() = inverse_mass_[i];
+    }
+}
+
+void GarmentCloth::unweigh() noexcept {
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+        rows_.x[i].w() = 0.0f;
+    }
+}
+
+/// A damped implicit spring where the cloth is partly attached.
+void GarmentCloth::follow_targets(const Substep& now) noexcept {
+    for (const std::uint32_t i : pulled_) {
+        const float rate = static_cast<float>(settings_.pull_rate) * attachment_[i] /
+                           (1.0f - attachment_[i]) * now.length;
+        const Vec4 moved =
+            rows_.x[i] - rows_.q[i] - now.share * (target_after_[i] - target_before_[i]);
+        rows_.x[i] += (rate * rate * (target(i, now.fraction) - rows_.x[i]) - 2.0f * rate * moved) /
+                      (1.0f + 2.0f * rate + rate * rate);
+    }
+}
+
+void GarmentCloth::hold_on_leash(std::span<const std::uint32_t> vertices, float fraction) noexcept {
+    for (const std::uint32_t i : vertices) {
         const Vec4 goal = target(i, fraction);
-        const float attached = attachment_[i];
-        if (attached > 0.0f) {
-            const float rate =
-                static_cast<float>(settings_.pull_rate) * attached / (1.0f - attached) * substep;
-            const Vec4 moved = x - rows_.q[i] - share * (target_after_[i] - target_before_[i]);
-            x += (rate * rate * (goal - x) - 2.0f * rate * moved) /
-                 (1.0f + 2.0f * rate + rate * rate);
-        }
-        const float leash = static_cast<float>(settings_.leash) * (1.0f - attached);
-        const Vec4 off = x - goal;
+        const float leash = static_cast<float>(settings_.leash) * (1.0f - attachment_[i]);
+        const Vec4 off = rows_.x[i] - goal;
         const float squared = off.squaredNorm();
         if (squared > leash * leash) {
-            x = goal + (leash / std::sqrt(squared)) * off;
+            rows_.x[i] = goal + (leash / std::sqrt(squared)) * off;
         }
     }
 }
 
-void GarmentCloth::meet_body(float since, float substep) noexcept {
+/// Who has less than half of its leash left; the others are looked at when the step ends.
+void GarmentCloth::find_stretched_leashes() noexcept {
+    leashed_.clear();
+    for (const std::uint32_t i : free_) {
+        const float half = 0.5f * static_cast<float>(settings_.leash) * (1.0f - attachment_[i]);
+        if ((rows_.x[i] - target_after_[i]).squaredNorm() > half * half) {
+            leashed_.push_back(i);
+        }
+    }
+}
+
+void GarmentCloth::meet_body(const Substep& now) noexcept {
     const std::size_t count = start_.size();
-    contacts_.resolve({rows_.x.first(count), rows_.q.first(count), inverse_mass_}, since, substep,
-                      contact_);
+    contacts_.resolve({rows_.x.first(count), rows_.q.first(count), inverse_mass_}, now.since,
+                      now.length, contact_, now.index % kCentresEvery == 0 || now.last);
 }
 
-void GarmentCloth::update_velocities(float substep, bool damp) noexcept {
-    constexpr float kFastest = 30.0f; // m/s
-    const float per_second = 1.0f / substep;
+void GarmentCloth::update_velocities(const Substep& now) noexcept {
+    const bool damps = now.index % kDampEvery == kDampEvery - 1;
+    since_damped_ += now.length;
+    velocities_known_ = damps || now.last_of_interval;
+    if (!velocities_known_) {
+        return;
+    }
+    const float per_second = 1.0f / now.length;
     for (std::size_t i = 0; i < start_.size(); ++i) {
-        Vec4& v = rows_.v[i];
-        v = per_second * (rows_.x[i] - rows_.q[i]);
-        const float squared = v.squaredNorm();
-        if (squared > kFastest * kFastest) {
-            v *= kFastest / std::sqrt(squared);
-        }
+        rows_.v[i] = velocity(rows_.x[i], rows_.q[i], per_second);
     }
-    since_damped_ += substep;
-    if (damp) {
-        const float rate = fabric_.damping * static_cast<float>(settings_.damping_scale);
-        if (rate > 0.0f) {
-            damping_.apply(rows_.v, 1.0f - std::exp(-rate * since_damped_));
-        }
-        since_damped_ = 0.0f;
+    const float rate = fabric_.damping * static_cast<float>(settings_.damping_scale);
+    if (damps && rate > 0.0f) {
+        damping_.apply(rows_.v, 1.0f - std::exp(-rate * since_damped_));
     }
+    since_damped_ = damps ? 0.0f : since_damped_;
 }
 
 void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
@@ -246,7 +325,13 @@ void GarmentCloth::clean_up(const MovingBody& body, float since_last) noexcept {
                       {0.0f, since_last, 0.0f, period_, 0, 1, true, 1}, still);
     std::copy(x.begin(), x.end(), q.begin());
     cover_.find(body, contacts_, x, 0.008f);
-    for (int pass = 0; pass < static_cast<int>(settings_.clean_passes); ++pass) {
+    const int passes = static_cast<int>(settings_.clean_passes);
+    weigh();
+    for (int pass = 0; pass < passes; ++pass) {
+        last_limits_.solve(rows_.x);
+    }
+    unweigh();
+    for (int pass = 0; pass < passes; ++pass) {
         cover_.lift(body, contacts_.triangles(), x, inverse_mass_);
         contacts_.resolve({x, q, inverse_mass_}, 0.0f, 0.0f, still);
     }

@@ -4,6 +4,7 @@
 #include "cloth/garment_input.h"
 #include "cloth/skin_cover.h"
 #include "xpbd_cloth/links.h"
+#include "xpbd_cloth/row_order.h"
 #include "xpbd_cloth/settings.h"
 
 namespace toile::xpbd_cloth {
@@ -26,10 +27,22 @@ struct Interval {
     [[nodiscard]] float length() const { return static_cast<float>(substeps) * substep; }
 };
 
+/// One substep of a step.
+struct Substep {
+    std::uint32_t index; ///< in the step
+    bool last;           ///< of the step
+    bool last_of_interval;
+    float length;   ///< s
+    float fraction; ///< of the step that is over at its end
+    float share;    ///< of the step that it is
+    float since;    ///< s, from the body of the contacts to its end
+};
+
 class GarmentCloth {
   public:
     /// \throw Error naming what is wrong with the garment
-    GarmentCloth(const GarmentInput& input, const MovingBody& rest_body, const Settings& settings);
+    GarmentCloth(const GarmentInput& input, const MovingBody& rest_body, const Settings& settings)
+        : GarmentCloth(OrderedGarment(input), rest_body, settings) {}
 
     /// Another body: finds its place on it again.
     void bind(const MovingBody& rest_body) { contacts_.bind(rest_body, start_); }
@@ -45,11 +58,10 @@ class GarmentCloth {
 
     /// Finds the contacts of an interval; `body` is placed at its middle.
     void find_contacts(const MovingBody& body, const Interval& interval) noexcept;
-    /// A substep in three parts; cloth meets cloth after the first. `fraction` of the step is over
-    /// at its end; `since` seconds lie between the body of the contacts and its end.
-    void move(float fraction, float share, float substep) noexcept;
-    void meet_body(float since, float substep) noexcept;
-    void update_velocities(float substep, bool damp) noexcept;
+    /// A substep in three parts; cloth meets cloth after the first.
+    void move(const Substep& now) noexcept;
+    void meet_body(const Substep& now) noexcept;
+    void update_velocities(const Substep& now) noexcept;
 
     /// Last look at the full-resolution body, placed at the end of the step, `since_last` seconds
     /// after the middle of the last interval.
@@ -64,6 +76,8 @@ class GarmentCloth {
     [[nodiscard]] std::span<const Vec4> velocities() const noexcept {
         return rows_.v.first(start_.size());
     }
+    /// (nv) of the garment as given, for each row
+    [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertex_; }
     [[nodiscard]] std::span<const Triangle> triangles() const noexcept {
         return contacts_.triangles();
     }
@@ -76,8 +90,15 @@ class GarmentCloth {
     [[nodiscard]] unsigned layer() const noexcept { return layer_; }
 
   private:
-    void predict(float fraction, float substep) noexcept;
-    void follow_targets(float fraction, float share, float substep) noexcept;
+    GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest_body,
+                 const Settings& settings);
+    void predict(const Substep& now) noexcept;
+    /// The constraints find each row's inverse mass in its w; everything else wants 0 there.
+    void weigh() noexcept;
+    void unweigh() noexcept;
+    void follow_targets(const Substep& now) noexcept;
+    void hold_on_leash(std::span<const std::uint32_t> vertices, float fraction) noexcept;
+    void find_stretched_leashes() noexcept;
     [[nodiscard]] Vec4 target(std::size_t vertex, float fraction) const noexcept {
         return target_before_[vertex] + fraction * (target_after_[vertex] - target_before_[vertex]);
     }
@@ -86,21 +107,27 @@ class GarmentCloth {
     Fabric fabric_;
     unsigned layer_;
     cloth::ContactSettings contact_;
+    std::vector<std::uint32_t> vertex_;
     std::vector<Vec3f> start_;
     std::vector<float> attachment_;
     std::vector<float> mass_, inverse_mass_; ///< (nv) kg, 1/kg; 0: held
+    std::vector<std::uint32_t> held_;        ///< vertices of attachment 1
+    std::vector<std::uint32_t> pulled_;      ///< and of less that is not 0
+    std::vector<std::uint32_t> free_;        ///< all but the held ones
+    std::vector<std::uint32_t> leashed_;     ///< those whose leash this step may stretch
     float mean_edge_ = 0.0f;                 ///< m
     Membrane membrane_;
     Bending bending_;
-    Links seams_, limits_, borders_;
+    Links seams_, limits_, borders_, last_limits_;
     VelocityDamping damping_;
     cloth::BodyContacts contacts_;
     cloth::SkinCover cover_;
     Rows rows_;
     std::vector<Vec4> target_before_, target_after_;
-    float period_ = 0.0f;       ///< s, of the frame at hand
-    float since_damped_ = 0.0f; ///< s
-    bool bends_ = true;         ///< in the next substep; every second does
+    float period_ = 0.0f;          ///< s, of the frame at hand
+    float since_damped_ = 0.0f;    ///< s
+    bool velocities_known_ = true; ///< are those of the rows' last substep
+    std::uint32_t bend_every_ = 2; ///< substeps
 };
 
 } // namespace toile::xpbd_cloth

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace toile::xpbd_cloth {
 namespace {
@@ -17,48 +18,47 @@ std::vector<std::uint32_t> ends_of(const Pairs& pairs) {
     return ends;
 }
 
-} // namespace
-
-Links::Links(std::span<const Link> links, std::span<const float> inverse_mass, bool one_sided)
-    : one_sided_(one_sided) {
-    const auto nobody = static_cast<std::uint32_t>(inverse_mass.size());
-    const std::vector<std::uint32_t> order =
-        coloured_order(ends_of(links), 2, inverse_mass.size(), kLanes);
-    blocks_.resize(order.size() / kLanes);
+/// Eight links of `order` to a block; empty places hold the row after the last one.
+template <class Block>
+std::vector<Block> blocks_of(std::span<const Link> links, std::span<const std::uint32_t> order,
+                             std::size_t nobody) {
+    using Index = std::remove_all_extents_t<decltype(Block::end)>;
+    std::vector<Block> blocks(order.size() / kLanes);
     for (std::size_t i = 0; i < order.size(); ++i) {
-        Block& block = blocks_[i / kLanes];
+        Block& block = blocks[i / kLanes];
         const std::size_t lane = i % kLanes;
         const bool empty = order[i] == kNoConstraint;
-        const Link link = empty ? Link{nobody, nobody, 1.0f, 0.0f} : links[order[i]];
-        block.end[0][lane] = link.a;
-        block.end[1][lane] = link.b;
-        block.mass[0][lane] = empty ? 0.0f : inverse_mass[link.a];
-        block.mass[1][lane] = empty ? 0.0f : inverse_mass[link.b];
-        block.length[lane] = link.length;
-        block.soft[lane] = link.stiffness > 0.0f ? 1.0f / link.stiffness : 0.0f;
+        block.end[0][lane] = static_cast<Index>(empty ? nobody : links[order[i]].a);
+        block.end[1][lane] = static_cast<Index>(empty ? nobody : links[order[i]].b);
+        block.length[lane] = empty ? 1.0f : links[order[i]].length;
+    }
+    return blocks;
+}
+
+} // namespace
+
+Links::Links(std::span<const Link> links, std::size_t vertex_count, float stiffness, bool one_sided)
+    : softness_(1.0f / stiffness), one_sided_(one_sided) {
+    const std::vector<std::uint32_t> order =
+        coloured_order(ends_of(links), 2, vertex_count, kLanes);
+    if (vertex_count < kSmallRows) {
+        small_ = blocks_of<Block<SmallIndex>>(links, order, vertex_count);
+    } else {
+        large_ = blocks_of<Block<std::uint32_t>>(links, order, vertex_count);
     }
 }
 
-void Links::set_substep(float seconds) noexcept {
-    if (seconds == substep_) {
-        return;
-    }
-    substep_ = seconds;
-    for (Block& block : blocks_) {
-        for (std::size_t l = 0; l < kLanes; ++l) {
-            const float sum = block.mass[0][l] + block.mass[1][l];
-            block.step[l] = sum > 0.0f ? 1.0f / (sum + block.soft[l] / (seconds * seconds)) : 0.0f;
-        }
-    }
-}
-
-void Links::solve(std::span<Vec4f> x) const noexcept {
+template <class Index>
+void Links::solve_blocks(std::span<const Block<Index>> blocks, Vec4f* x) const noexcept {
     const __m256 zero = _mm256_setzero_ps();
     const __m256 tiny = _mm256_set1_ps(1e-9f);
-    for (const Block& block : blocks_) {
-        Lanes3 a = load_rows(x.data(), block.end[0]);
-        Lanes3 b = load_rows(x.data(), block.end[1]);
-        const Lanes3 apart = b - a;
+    // At least a little, for two that are held.
+    const __m256 soft = _mm256_set1_ps(std::max(softness_ / (substep_ * substep_), 1e-6f));
+    for (const Block<Index>& block : blocks) {
+        cloth::read_ahead(block);
+        Lanes4 a = load_rows4(x, block.end[0]);
+        Lanes4 b = load_rows4(x, block.end[1]);
+        const Lanes3 apart = b.xyz - a.xyz;
         const __m256 rest = load(block.length);
         const __m256 squared = dot(apart, apart);
         if (one_sided_ && _mm256_movemask_ps(
@@ -68,12 +68,18 @@ void Links::solve(std::span<Vec4f> x) const noexcept {
         const __m256 length = _mm256_max_ps(_mm256_sqrt_ps(squared), tiny);
         __m256 excess = _mm256_sub_ps(length, rest);
         excess = one_sided_ ? _mm256_max_ps(excess, zero) : excess;
-        const __m256 pull = _mm256_mul_ps(load(block.step), _mm256_div_ps(excess, length));
-        add(a, _mm256_mul_ps(load(block.mass[0]), pull), apart);
-        add(b, _mm256_sub_ps(zero, _mm256_mul_ps(load(block.mass[1]), pull)), apart);
-        store_rows(x.data(), block.end[0], a);
-        store_rows(x.data(), block.end[1], b);
+        const __m256 sum = _mm256_add_ps(_mm256_add_ps(a.w, b.w), soft);
+        const __m256 pull = _mm256_div_ps(excess, _mm256_mul_ps(length, sum));
+        add(a.xyz, _mm256_mul_ps(a.w, pull), apart);
+        add(b.xyz, _mm256_sub_ps(zero, _mm256_mul_ps(b.w, pull)), apart);
+        store_rows4(x, block.end[0], a);
+        store_rows4(x, block.end[1], b);
     }
+}
+
+void Links::solve(std::span<Vec4f> x) const noexcept {
+    solve_blocks<SmallIndex>(small_, x.data());
+    solve_blocks<std::uint32_t>(large_, x.data());
 }
 
 VelocityDamping::VelocityDamping(std::span<const Edge> edges, std::span<const float> inverse_mass) {

@@ -8,31 +8,34 @@ namespace toile::xpbd_cloth {
 /// Two vertices and how far apart they are at rest or at most.
 struct Link {
     std::uint32_t a, b;
-    float length;    ///< m
-    float stiffness; ///< N/m; 0: a hard limit
+    float length; ///< m
 };
 
-/// Distance constraints, eight of one colour at a time. One-sided ones act only when too long.
+/// Distance constraints of one stiffness, eight of one colour at a time. One-sided ones act only
+/// when too long.
 class Links {
   public:
-    Links(std::span<const Link> links, std::span<const float> inverse_mass, bool one_sided);
+    /// `vertex_count` of the garment; `stiffness` N/m, infinite: a hard limit
+    Links(std::span<const Link> links, std::size_t vertex_count, float stiffness, bool one_sided);
 
-    void set_substep(float seconds) noexcept;
-    /// One pass. `x` (nv + 1): the last row stands for the empty places of a group.
+    void set_substep(float seconds) noexcept { substep_ = seconds; }
+    /// One pass over the rows of membrane.h.
     void solve(std::span<Vec4f> x) const noexcept;
-    [[nodiscard]] bool empty() const noexcept { return blocks_.empty(); }
 
   private:
-    struct alignas(32) Block {
-        std::uint32_t end[2][kLanes];
-        float mass[2][kLanes]; ///< 1/kg
-        float length[kLanes];  ///< m
-        float soft[kLanes];    ///< m/N
-        float step[kLanes];    ///< 1 / (w_a + w_b + soft / h^2), or 0
+    template <class Index>
+    struct alignas(16) Block {
+        Index end[2][kLanes];
+        float length[kLanes]; ///< m
     };
-    std::vector<Block> blocks_;
+    template <class Index>
+    void solve_blocks(std::span<const Block<Index>> blocks, Vec4f* x) const noexcept;
+
+    std::vector<Block<SmallIndex>> small_;
+    std::vector<Block<std::uint32_t>> large_;
+    float softness_; ///< m/N
     bool one_sided_;
-    float substep_ = 0.0f;
+    float substep_ = 1.0f; ///< s
 };
 
 /// Neighbours lose a share of their relative velocity; momentum is kept. One row at a time.

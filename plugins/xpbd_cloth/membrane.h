@@ -1,13 +1,26 @@
 // In-plane stretch of a woven sheet: warp, weft and shear of every triangle.
 #pragma once
 
+#include "cloth/lanes.h"
 #include "cloth/sheet.h"
-#include "xpbd_cloth/lanes.h"
 
 namespace toile::xpbd_cloth {
 
 using cloth::ClothMesh;
 using cloth::Fabric;
+using cloth::kLanes;
+using cloth::Lanes3;
+using cloth::Lanes4;
+using cloth::load;
+using cloth::load_rows4;
+using cloth::store_rows4;
+
+/// Constraints of each kind move the rows `x` (nv + 1) of a garment: x y z, and in w the inverse
+/// mass (1/kg, 0 = held), so that it comes with the position. The last row stands for the empty
+/// places of a group; its w is 0. A garment of at most so many rows has small indices, since the
+/// constraints are read in every substep and reading them is what that costs.
+inline constexpr std::size_t kSmallRows = 65536;
+using SmallIndex = std::uint16_t;
 
 /// Constant-strain triangles as compliant constraints (Macklin et al. 2016, eq. 18, one iteration
 /// a substep): with F = [x1 - x0, x2 - x0] Dm^-1, columns F_u along the weft and F_v along the
@@ -17,29 +30,35 @@ using cloth::Fabric;
 /// time.
 class Membrane {
   public:
-    /// `inverse_mass` (nv) 1/kg, 0 = held.
     /// \throw Error for a triangle without area in its material coordinates
-    Membrane(const ClothMesh& mesh, const Fabric& fabric, std::span<const float> inverse_mass);
+    Membrane(const ClothMesh& mesh, const Fabric& fabric);
 
-    void set_substep(float seconds) noexcept;
-    /// One pass. `x` (nv + 1): the last row stands for the empty places of a group.
+    void set_substep(float seconds) noexcept { substep_ = seconds; }
+    /// One pass.
     void solve(std::span<Vec4f> x) const noexcept;
 
   private:
     /// Eight triangles.
-    struct alignas(32) Block {
-        std::uint32_t corner[3][kLanes];
-        float mass[3][kLanes];                ///< 1/kg
-        float weft[2][kLanes];                ///< 1/m, F_u = e1 weft[0] + e2 weft[1]
-        float warp[2][kLanes];                ///< 1/m
-        float step_u[kLanes], step_v[kLanes]; ///< 1 / (sum of w |grad C|^2 + compliance / h^2)
-        float compliance_s[kLanes];           ///< 1/(N m) / h^2
+    template <class Index>
+    struct alignas(16) Block {
+        Index corner[3][kLanes];
+        float weft[2][kLanes]; ///< 1/m, F_u = e1 weft[0] + e2 weft[1]
+        float warp[2][kLanes]; ///< 1/m
     };
-    static void solve_block(const Block& block, Vec4f* x) noexcept;
+    /// 1/(N m s^2) times m^2: over a triangle's area it is compliance / h^2.
+    struct Softness {
+        __m256 u, v, shear;
+    };
+    template <class Index>
+    static void solve_block(const Block<Index>& block, const Softness& soft, Vec4f* x) noexcept;
+    template <class Index>
+    void add_blocks(const ClothMesh& mesh, std::span<const std::uint32_t> order,
+                    std::vector<Block<Index>>& blocks) const;
 
-    std::vector<Block> blocks_;
+    std::vector<Block<SmallIndex>> small_;
+    std::vector<Block<std::uint32_t>> large_;
     float stiffness_u_, stiffness_v_, stiffness_s_; ///< N/m
-    float substep_ = 0.0f;
+    float substep_ = 1.0f;                          ///< s
 };
 
 } // namespace toile::xpbd_cloth

@@ -113,11 +113,28 @@ SceneMesh subdivided(const SceneMesh& mesh) {
     return fine;
 }
 
+SceneMesh doubled(const SceneMesh& mesh, float apart) {
+    SceneMesh both = mesh;
+    const auto count = static_cast<std::uint32_t>(mesh.positions.size());
+    const std::vector<Vec3f> normals = normals_of(mesh, mesh.positions);
+    for (std::size_t v = 0; v < count; ++v) {
+        both.positions.emplace_back(mesh.positions[v] + apart * normals[v]);
+    }
+    for (const Triangle& t : mesh.triangles) {
+        both.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+    }
+    return both;
+}
+
 ClothScene::ClothScene(const std::filesystem::path& folder, const std::string& level)
     : body(read_scene_mesh(folder / "body.obj")),
-      cloth(read_scene_mesh(folder / (level == "3k" ? "cloth_3k.obj" : "cloth_10k.obj"))) {
+      cloth(
+          read_scene_mesh(folder / (level.starts_with("3k") ? "cloth_3k.obj" : "cloth_10k.obj"))) {
     if (level == "30k") {
         cloth = subdivided(cloth);
+    } else if (level == "3k+3k") {
+        cloth = doubled(cloth, 0.008f);
+        layers = 2;
     }
     std::ifstream in(folder / "arm_weights_LR.txt");
     arm.resize(body.positions.size());

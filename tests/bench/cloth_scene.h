@@ -19,6 +19,8 @@ struct SceneMesh {
 /// Vertices and triangles as they stand in the file. \throw std::runtime_error naming it
 [[nodiscard]] SceneMesh read_scene_mesh(const std::filesystem::path& file);
 void write_scene_mesh(const std::filesystem::path& file, const SceneMesh& mesh);
+/// The same with a second one around it, `apart` metres out.
+[[nodiscard]] SceneMesh doubled(const SceneMesh& mesh, float apart);
 /// Every triangle in four, in its plane.
 [[nodiscard]] SceneMesh subdivided(const SceneMesh& mesh);
 
@@ -27,10 +29,11 @@ struct ClothScene {
     static constexpr double kFrame = 1.0 / 60.0;
 
     SceneMesh body, cloth;
+    std::size_t layers = 1;                ///< equal parts of the cloth, the innermost first
     std::vector<std::array<float, 2>> arm; ///< (body nv) weights of the left and right arm
     std::vector<std::array<float, 2>> cloth_arm;
 
-    /// `level` "3k", "10k" or "30k" (10k, subdivided)
+    /// `level` "3k", "10k", "30k" (10k, subdivided) or "3k+3k" (two layers)
     ClothScene(const std::filesystem::path& folder, const std::string& level);
     /// Moves rest positions as the arms do at a time: up by 45 degrees and down again.
     static void pose(const std::vector<Vec3f>& rest, const std::vector<std::array<float, 2>>& arm,

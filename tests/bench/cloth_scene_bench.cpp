@@ -21,7 +21,7 @@ using namespace toile;
 
 struct Options {
     std::string plugin = "toile.xpbd_cloth";
-    std::vector<std::string> levels{"3k", "10k", "30k"}, motions{"static", "arms"};
+    std::vector<std::string> levels{"3k", "10k", "30k", "3k+3k"}, motions{"static", "arms"};
     std::vector<std::pair<std::string, double>> parameters{
         // params.json: 3 mm from the skin; nothing holds the dress but friction
         {"margin", 0.00275},
@@ -80,7 +80,7 @@ void skin_of(const std::vector<std::array<float, 2>>& arm, std::vector<Joints>& 
         weights.push_back({1.0f - row[0] - row[1], row[0], row[1], 0.0f});
 }
 
-/// The dress in a plugin's world, stepped through the boundary.
+/// The dress, or one over the other, in a plugin's world, stepped through the boundary.
 class Dress {
   public:
     Dress(const bench::ClothScene& scene, host::Registry& registry, host::Services& services,
@@ -107,19 +107,23 @@ class Dress {
         toile_body_state now = was;
         was.positions = host::view_of(before);
         now.positions = host::view_of(after);
-        toile_garment_target target{garment_, 0, host::view_of(targets)};
-        auto state = host::sized<toile_garment_state>();
-        state.garment = garment_;
-        state.positions = host::view_mut(std::span(positions));
-        state.normals = host::view_mut(std::span(normals));
+        const std::size_t rows = targets.size() / garments_.size();
+        for (std::size_t k = 0; k < garments_.size(); ++k) {
+            const auto part = [&](auto& all) { return std::span(all).subspan(k * rows, rows); };
+            targets_[k] = {garments_[k], 0, host::view_of(part(std::as_const(targets)))};
+            states_[k] = host::sized<toile_garment_state>();
+            states_[k].garment = garments_[k];
+            states_[k].positions = host::view_mut(part(positions));
+            states_[k].normals = host::view_mut(part(normals));
+        }
         auto request = host::sized<toile_cloth_step>();
         request.flags = reset ? TOILE_STEP_RESET : TOILE_STEP_NONE;
         request.body_before = &was;
         request.body_after = &now;
         request.dt_s = dt_s;
-        request.targets = &target;
-        request.states = &state;
-        request.garment_count = 1;
+        request.targets = targets_.data();
+        request.states = states_.data();
+        request.garment_count = static_cast<std::uint32_t>(garments_.size());
         const double begin = cpu_ms();
         instance_.call("step", [&](toile_instance* i) { return table_.step(i, &request); });
         return cpu_ms() - begin;
@@ -141,12 +145,28 @@ class Dress {
         host::Job job;
         instance_.call("set_body",
                        [&](toile_instance* i) { return table_.set_body(i, &body, job.handle()); });
+        for (std::uint32_t layer = 0; layer < scene_.layers; ++layer)
+            add(layer, cloth_joints, cloth_weights, job);
+        targets_.resize(garments_.size());
+        states_.resize(garments_.size());
+    }
+
+    void add(std::uint32_t layer, const std::vector<Joints>& joints,
+             const std::vector<Weights>& weights, host::Job& job) {
+        const std::size_t rows = scene_.cloth.positions.size() / scene_.layers;
+        const std::size_t count = scene_.cloth.triangles.size() / scene_.layers;
+        const auto part = [&](const auto& all) {
+            return std::span(all).subspan(layer * rows, rows);
+        };
+        std::vector<Triangle> triangles(scene_.cloth.triangles.begin(),
+                                        scene_.cloth.triangles.begin() + std::ptrdiff_t(count));
         auto dress = host::sized<toile_cloth_garment>();
-        dress.rest.positions = host::view_of(scene_.cloth.positions);
-        dress.rest.triangles = host::view_of(scene_.cloth.triangles);
-        dress.joint_indices = host::view_of(cloth_joints);
-        dress.joint_weights = host::view_of(cloth_weights);
-        const std::vector<float> attachment(scene_.cloth.positions.size(), 0.0f);
+        dress.layer = layer;
+        dress.rest.positions = host::view_of(part(scene_.cloth.positions));
+        dress.rest.triangles = host::view_of(triangles);
+        dress.joint_indices = host::view_of(part(joints));
+        dress.joint_weights = host::view_of(part(weights));
+        const std::vector<float> attachment(rows, 0.0f);
         dress.attachment = host::view_of(attachment);
         dress.fabric = host::sized<toile_fabric>();
         dress.fabric.density_kg_m2 = 0.2f;
@@ -157,14 +177,16 @@ class Dress {
         dress.fabric.friction = 0.3f;
         dress.fabric.damping = 2.0f;
         instance_.call("add_garment", [&](toile_instance* i) {
-            return table_.add_garment(i, &dress, job.handle(), &garment_);
+            return table_.add_garment(i, &dress, job.handle(), &garments_.emplace_back());
         });
     }
 
     const bench::ClothScene& scene_;
     host::Instance instance_;
     const toile_cloth& table_;
-    std::uint32_t garment_ = 0;
+    std::vector<std::uint32_t> garments_;
+    std::vector<toile_garment_target> targets_;
+    std::vector<toile_garment_state> states_;
 
   public:
     std::vector<Vec3f> before, after, targets, positions, normals;
