@@ -33,7 +33,7 @@ void make_block_package(const BlockOptions& options, const garment::PackageLimit
     if (!options.id.empty()) design.id = options.id;
     design.girth_ease_m = options.girth_ease_m;
     const garment::GarmentPackage package = garment::block::make_block(design, orders);
-    garment::write_package(package, options.out);
+    garment::write_package(package, options.out, true);
     for (const auto& size : package.sizes) {
         std::printf("size %s on %s: %zu vertices, %zu triangles\n", size.entry.name.c_str(),
                     size.entry.made_on.c_str(), size.simulation.positions.size(),

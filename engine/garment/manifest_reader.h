@@ -1,9 +1,9 @@
 // Reads a JSON object key by key and goes on after a fault, so that all of them are reported.
 #pragma once
 
-#include "garment/manifest.h"
 #include "core/json.h"
 #include "garment/fault.h"
+#include "garment/manifest.h"
 
 #include <functional>
 #include <string>

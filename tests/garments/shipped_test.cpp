@@ -88,23 +88,25 @@ TEST_P(ShippedGarment, HasSixSizesTwoColourwaysAndHangsOnEachBody) {
         EXPECT_EQ(size.simulation.triangles, package->sizes[0].simulation.triangles);
         EXPECT_EQ(count_loops(size.simulation.triangles), GetParam().openings);
         // Leggings are meant to stretch; the rest hangs nearly unstrained.
-        EXPECT_LT(rms_strain(size), package->manifest.fabric.stretch_warp_n_m < 200.0 ? 0.20 : 0.06);
+        EXPECT_LT(rms_strain(size),
+                  package->manifest.fabric.stretch_warp_n_m < 200.0 ? 0.20 : 0.06);
         const auto body = body::load_body_model(body::find_avatar(size.entry.made_on));
         EXPECT_LE(deep_fraction(size, body), 0.001);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, ShippedGarment,
-    testing::Values(Shipped{"coat", 4}, Shipped{"draped-top", 4}, Shipped{"dress", 4},
-                    Shipped{"flared-skirt", 2}, Shipped{"leggings", 3}, Shipped{"pencil-skirt", 2},
-                    Shipped{"shirt", 4}, Shipped{"shorts", 3}, Shipped{"sweatshirt", 4},
-                    Shipped{"tank-top", 4}, Shipped{"tee", 4}, Shipped{"trousers", 3}),
-    [](const auto& tested) {
-        std::string name = tested.param.id;
-        std::replace(name.begin(), name.end(), '-', '_');
-        return name;
-    });
+INSTANTIATE_TEST_SUITE_P(All, ShippedGarment,
+                         testing::Values(Shipped{"coat", 4}, Shipped{"draped-top", 4},
+                                         Shipped{"dress", 4}, Shipped{"flared-skirt", 2},
+                                         Shipped{"leggings", 3}, Shipped{"pencil-skirt", 2},
+                                         Shipped{"shirt", 4}, Shipped{"shorts", 3},
+                                         Shipped{"sweatshirt", 4}, Shipped{"tank-top", 4},
+                                         Shipped{"tee", 4}, Shipped{"trousers", 3}),
+                         [](const auto& tested) {
+                             std::string name = tested.param.id;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
 
 TEST(ShippedGarments, AllTogetherStayBelow40Megabytes) {
     std::uintmax_t sum = 0;

@@ -4,11 +4,13 @@
 #include "garment/pattern_piece.h"
 #include "garment/placed_pattern.h"
 #include "garment/recipe.h"
+#include "support/json_schema.h"
 #include "support/shared_data.h"
 #include "support/temporary_folder.h"
 #include "support/throws.h"
 
-#include <gtest/gtest.h>
+#include <fstream>
+#include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -114,10 +116,23 @@ TEST(Recipe, NamesWhatIsWrong) {
     EXPECT_ERROR((void)load([](json& r) { r["colourways"][0]["color"] = "red"; }), "#rrggbb");
     EXPECT_ERROR((void)load([](json& r) { r["parts"][0]["weave"] = "felt"; }),
                  "'felt' is none of jersey");
-    EXPECT_ERROR((void)load([](json& r) {
-                     r["panels"][0]["border"] = json::parse(R"([["p0", "hem"]])");
-                 }),
-                 "at least two corners");
+    EXPECT_ERROR(
+        (void)load([](json& r) { r["panels"][0]["border"] = json::parse(R"([["p0", "hem"]])"); }),
+        "at least two corners");
+}
+
+TEST(Recipe, AllThatComeAlongAreReadAndFitTheirSchema) {
+    const test::JsonSchema schema("recipe.schema.json");
+    std::size_t count = 0;
+    for (const auto& entry :
+         fs::directory_iterator(fs::path(TOILE_SOURCE_DIR) / "garments/recipes")) {
+        SCOPED_TRACE(entry.path().filename());
+        EXPECT_EQ(load_recipe(entry.path()).id, entry.path().stem());
+        std::ifstream in(entry.path());
+        EXPECT_THAT(schema.faults(test::JsonSchema::Json::parse(in)), testing::IsEmpty());
+        ++count;
+    }
+    EXPECT_GE(count, 12u);
 }
 
 // A DXF in the manner of pattern CAD: one block, polyline on the cut and the sew layer.
