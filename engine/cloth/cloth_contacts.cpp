@@ -62,18 +62,17 @@ void ClothContacts::arrange(std::span<const ClothPart> parts, std::size_t rows) 
             star_[next[v]++] = t;
         }
     }
-    tangled_.assign(rows, 0);
-    nearest_.assign(2 * rows, kNobody);
+    nearest_.assign(rows, kNobody);
     std::vector<ClothTree::Vertex> leaves(rows);
     for (std::size_t v = 0; v < rows; ++v) {
         const Vec3f& p = vertices_[v].start;
         leaves[v] = {Vec4f(p.x(), p.y(), p.z(), 0.0f), vertices_[v].apart, vertices_[v].part};
     }
     tree_.arrange(leaves);
-    met_.assign(2 * rows, kNobody);
-    side_.assign(2 * rows, 0.0f);
+    met_.assign(rows, kNobody);
+    side_.assign(rows, 0.0f);
     contacts_.clear();
-    contacts_.reserve(2 * rows);
+    contacts_.reserve(rows);
 }
 
 void ClothContacts::reset() noexcept {
@@ -97,27 +96,10 @@ bool ClothContacts::same_sheet(std::span<const Vec4f> x, std::uint32_t first,
            normal_s.dot(normal_t) > 0.0f;
 }
 
-Vec4f ClothContacts::normal_of(std::span<const Vec4f> x, std::uint32_t vertex) const noexcept {
-    Vec4f sum = Vec4f::Zero();
-    for (std::uint32_t s = star_first_[vertex]; s < star_first_[vertex + 1]; ++s) {
-        const Triangle& t = triangles_[star_[s]];
-        sum += (x[t[1]] - x[t[0]]).cross3(x[t[2]] - x[t[0]]);
-    }
-    return sum;
-}
-
-/// Where they face each other they are on two parts of the body that meet.
-bool ClothContacts::layered(std::span<const Vec4f> x, std::uint32_t a,
-                            std::uint32_t b) const noexcept {
-    return parts_[vertices_[a].part].layer != parts_[vertices_[b].part].layer &&
-           normal_of(x, a).dot(normal_of(x, b)) > 0.0f;
-}
-
 /// Lists the contact of a vertex with the nearest triangle at another one.
 void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other,
                          float reach) noexcept {
     const Vec4f& p = x[vertex];
-    const std::size_t slot = slot_of(vertex, other);
     float least = reach * reach;
     std::uint32_t nearest = kNobody;
     std::array<float, 3> place{};
@@ -133,7 +115,7 @@ void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::ui
         }
     }
     if (nearest == kNobody) {
-        met_[slot] = kNobody;
+        met_[vertex] = kNobody;
         return;
     }
     const Triangle& t = triangles_[nearest];
@@ -142,21 +124,21 @@ void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::ui
     const Vec4f normal = (x[t[1]] - x[t[0]]).cross3(x[t[2]] - x[t[0]]);
     const float height = (p - x[t[0]]).dot(normal) / std::max(normal.norm(), 1e-12f);
     constexpr float kSlant = 0.5f;
-    if (std::abs(height) < kSlant * std::sqrt(least) && met_[slot] == kNobody) {
+    if (std::abs(height) < kSlant * std::sqrt(least) && met_[vertex] == kNobody) {
         return; // beside the end of a sheet: on neither side of it
     }
-    if (layered(x, vertex, other)) {
-        side_[slot] = mine.layer > theirs.layer ? 1.0f : -1.0f;
-    } else if (met_[slot] == kNobody || !same_sheet(x, met_[slot], nearest)) {
-        side_[slot] = height >= 0.0f ? 1.0f : -1.0f;
+    if (mine.layer != theirs.layer) {
+        side_[vertex] = mine.layer > theirs.layer ? 1.0f : -1.0f;
+    } else if (met_[vertex] == kNobody || !same_sheet(x, met_[vertex], nearest)) {
+        side_[vertex] = height >= 0.0f ? 1.0f : -1.0f;
     }
-    met_[slot] = nearest;
+    met_[vertex] = nearest;
     constexpr float kAir = 0.001f; // m, beyond half of both thicknesses
     const float gap = 0.5f * (mine.thickness + theirs.thickness) + kAir;
     contacts_.push_back({vertex,
                          {t[0], t[1], t[2]},
                          {place[0], place[1], place[2]},
-                         side_[slot],
+                         side_[vertex],
                          std::min(gap, reach_),
                          std::max(mine.friction, theirs.friction)});
 }
@@ -165,15 +147,14 @@ void ClothContacts::meet(std::span<const Vec4f> x, std::uint32_t vertex, std::ui
 void ClothContacts::untangle() noexcept {
     for (Contact& contact : contacts_) {
         const Vertex& there = vertices_[contact.corner[0]];
-        const std::size_t kind = slot_of(contact.vertex, contact.corner[0]) - contact.vertex;
         int same = 0;
         int opposite = 0;
         for (std::uint32_t s = star_first_[contact.vertex]; s < star_first_[contact.vertex + 1];
              ++s) {
             for (const std::uint32_t v : triangles_[star_[s]]) {
-                if (v != contact.vertex && met_[kind + v] != kNobody &&
-                    same_piece(vertices_[triangles_[met_[kind + v]][0]], there)) {
-                    ++(side_[kind + v] == contact.side ? same : opposite);
+                if (v != contact.vertex && met_[v] != kNobody &&
+                    same_piece(vertices_[triangles_[met_[v]][0]], there)) {
+                    ++(side_[v] == contact.side ? same : opposite);
                 }
             }
         }
@@ -181,21 +162,19 @@ void ClothContacts::untangle() noexcept {
         contact.side = opposite > 2 * same + kFew ? -contact.side : contact.side;
     }
     for (const Contact& contact : contacts_) {
-        side_[slot_of(contact.vertex, contact.corner[0])] = contact.side;
+        side_[contact.vertex] = contact.side;
     }
 }
 
-void ClothContacts::find(std::span<Vec4f> x, std::span<const Vec4f> v, float seconds) noexcept {
+void ClothContacts::find(std::span<const Vec4f> x, std::span<const Vec4f> v,
+                         float seconds) noexcept {
     contacts_.clear();
     tree_.find(x, radius_, nearest_);
-    part_tangles(x);
-    const std::size_t rows = vertices_.size();
-    for (std::size_t slot = 0; slot < 2 * rows; ++slot) {
-        const auto i = static_cast<std::uint32_t>(slot < rows ? slot : slot - rows);
-        if (nearest_[slot] == kNobody) {
-            met_[slot] = kNobody;
-        } else if (vertices_[i].weight > 0.0f && tangled_[i] == 0) {
-            meet(x, i, nearest_[slot], std::min(reach_ + v[i].norm() * seconds, radius_));
+    for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
+        if (nearest_[i] == kNobody) {
+            met_[i] = kNobody;
+        } else if (vertices_[i].weight > 0.0f) {
+            meet(x, i, nearest_[i], std::min(reach_ + v[i].norm() * seconds, radius_));
         }
     }
     untangle();

@@ -29,9 +29,8 @@ class ClothContacts {
     /// Forgets who is near whom.
     void reset() noexcept;
 
-    /// Finds who is near or, at velocity v, will be within `seconds`; (rows) each. Moves those a
-    /// little whose edges pass through a triangle.
-    void find(std::span<Vec4f> x, std::span<const Vec4f> v, float seconds) noexcept;
+    /// Finds who is near or, at velocity v, will be within `seconds`; (rows) each.
+    void find(std::span<const Vec4f> x, std::span<const Vec4f> v, float seconds) noexcept;
     /// Keeps them apart, with friction against the motion since q; (rows) each. What parts them is
     /// no reason to fly off: it is taken from q too. Who is deeper than the reach is let pass.
     void resolve(std::span<Vec4f> x, std::span<Vec4f> q) const noexcept;
@@ -54,21 +53,9 @@ class ClothContacts {
 
     [[nodiscard]] bool same_sheet(std::span<const Vec4f> x, std::uint32_t first,
                                   std::uint32_t second) const noexcept;
-    [[nodiscard]] std::size_t slot_of(std::uint32_t vertex, std::uint32_t other) const noexcept {
-        const bool own = vertices_[vertex].part == vertices_[other].part;
-        return own ? vertex : vertices_.size() + vertex;
-    }
     void meet(std::span<const Vec4f> x, std::uint32_t vertex, std::uint32_t other,
               float reach) noexcept;
     void untangle() noexcept;
-    [[nodiscard]] Vec4f normal_of(std::span<const Vec4f> x, std::uint32_t vertex) const noexcept;
-    /// Do two vertices lie in layers that are worn one over the other here?
-    [[nodiscard]] bool layered(std::span<const Vec4f> x, std::uint32_t a,
-                               std::uint32_t b) const noexcept;
-    [[nodiscard]] Vec4f way_out(std::span<const Vec4f> x, std::uint32_t a, std::uint32_t b,
-                                const Vec4f& normal) const noexcept;
-    void part(std::span<Vec4f> x, std::uint32_t a, std::uint32_t b, const Triangle& t) noexcept;
-    void part_tangles(std::span<Vec4f> x) noexcept;
     [[nodiscard]] bool same_piece(const Vertex& a, const Vertex& b) const noexcept {
         return a.part == b.part && (a.start - b.start).squaredNorm() < a.apart * a.apart;
     }
@@ -77,13 +64,11 @@ class ClothContacts {
     std::vector<Vertex> vertices_;                 ///< (rows)
     std::vector<Triangle> triangles_;              ///< of all parts, by rows
     std::vector<std::uint32_t> star_first_, star_; ///< triangles at each row
-    /// A vertex may meet one triangle of its own garment and one of another: slots (2 rows).
-    std::vector<std::uint32_t> met_;    ///< (slots) triangle met, or kNobody
-    std::vector<float> side_;           ///< (slots) of that triangle; 0: none
-    std::vector<std::uint8_t> tangled_; ///< (rows) 1: at a passage of an edge through a triangle
+    std::vector<std::uint32_t> met_;               ///< (rows) triangle met, or kNobody
+    std::vector<float> side_;                      ///< (rows) of that triangle; 0: none
     ClothTree tree_;
-    std::vector<std::uint32_t> nearest_; ///< (slots) vertex of another piece, or kNobody
-    std::vector<Contact> contacts_;      ///< capacity (slots)
+    std::vector<std::uint32_t> nearest_; ///< (rows) vertex of another piece, or kNobody
+    std::vector<Contact> contacts_;      ///< capacity (rows)
     float reach_ = 0.0f;                 ///< m, between surfaces
     float radius_ = 0.0f;                ///< m, between vertices
 };

@@ -13,7 +13,7 @@ constexpr float kFarAway = 1e9f; // m
 
 void ClothTree::arrange(std::span<const Vertex> vertices) {
     vertices_.assign(vertices.begin(), vertices.end());
-    least_.assign(2 * vertices.size(), 0.0f);
+    least_.assign(vertices.size(), 0.0f);
     leaves_.clear();
     for (std::uint32_t v = 0; v < vertices.size(); ++v) {
         if (vertices[v].part == kNobody) {
@@ -97,11 +97,9 @@ bool ClothTree::may_touch(std::uint32_t a, std::uint32_t b, float radius) const 
 
 void ClothTree::note(std::uint32_t row, std::uint32_t other, float squared,
                      std::span<std::uint32_t> nearest) noexcept {
-    const bool own = vertices_[row].part == vertices_[other].part;
-    const std::size_t at = own ? row : vertices_.size() + row;
-    if (squared < least_[at] || (squared == least_[at] && other < nearest[at])) {
-        least_[at] = squared;
-        nearest[at] = other;
+    if (squared < least_[row] || (squared == least_[row] && other < nearest[row])) {
+        least_[row] = squared;
+        nearest[row] = other;
     }
 }
 

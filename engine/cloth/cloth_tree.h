@@ -24,9 +24,8 @@ class ClothTree {
     /// (rows) Vertices of part kNobody are left out; each part's rows follow each other.
     void arrange(std::span<const Vertex> vertices);
 
-    /// For each row the nearest one of another piece of its own part within `radius` metres, of
-    /// equally near ones the lowest, or kNobody; then the same of other parts. `x` (rows),
-    /// `nearest` (2 rows).
+    /// For each row the nearest one of another piece within `radius` metres, of equally near ones
+    /// the lowest, or kNobody. (rows) each.
     void find(std::span<const Vec4f> x, float radius, std::span<std::uint32_t> nearest) noexcept;
 
     [[nodiscard]] bool same_piece(std::uint32_t a, std::uint32_t b) const noexcept {
@@ -66,7 +65,7 @@ class ClothTree {
     std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;
     std::vector<Box> boxes_;   ///< of each node, now
-    std::vector<float> least_; ///< (2 rows) m^2, to the nearest
+    std::vector<float> least_; ///< (rows) m^2, to the nearest
 };
 
 } // namespace toile::cloth

@@ -164,12 +164,10 @@ GarmentCloth::GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest
     }
 }
 
-/// On finer cloth a pull may go slower: the limits over several edges carry more of its way.
 double GarmentCloth::substep_rate() const noexcept {
-    constexpr double kUsual = 0.02; // m
-    const double finer = std::pow(static_cast<double>(mean_edge_) / kUsual, 0.4);
-    const double rate = settings_.wave_speed * finer / static_cast<double>(mean_edge_);
-    return settings_.substep_rate > 0.0 ? settings_.substep_rate : std::clamp(rate, 480.0, 6000.0);
+    return settings_.substep_rate > 0.0
+               ? settings_.substep_rate
+               : std::clamp(settings_.wave_speed / static_cast<double>(mean_edge_), 480.0, 6000.0);
 }
 
 void GarmentCloth::begin_step(std::span<const Vec3f> targets, float substep) noexcept {
