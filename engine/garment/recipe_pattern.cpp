@@ -234,7 +234,13 @@ std::vector<Vec3d> Builder::waist_ring(const StripRecipe& strip, double& half_le
             height += place(p).y() / (9.0 * static_cast<double>(strip.along.size()));
         }
     }
-    const Ring ring = body.ring(height);
+    // The body may widen within the strip's height.
+    Ring ring = body.ring(height);
+    for (const double up : {0.5, 1.0}) {
+        const Ring higher = body.ring(height + up * strip.height_m);
+        ring.hull.insert(ring.hull.end(), higher.hull.begin(), higher.hull.end());
+    }
+    ring.hull = convex_hull(std::move(ring.hull));
     const double ease =
         std::max(0.004, (2.0 * half_length - ring.girth()) / (2.0 * std::numbers::pi));
     std::vector<Vec3d> points;
