@@ -58,8 +58,8 @@ class Drape {
         : assembly_(assembly), x_(block.positions), body_(body), options_(options),
           edges_(rest_edges(assembly.triangles, block.material_coords)),
           hinges_(hinges(assembly.triangles, block.material_coords)),
-          velocity_(x_.size(), Vec3d::Zero()), before_(x_), inverse_mass_(x_.size(), 0.0),
-          lambda_(edges_.size(), 0.0) {
+          velocity_(x_.size(), Vec3d::Zero()), before_(x_), marked_(x_),
+          inverse_mass_(x_.size(), 0.0), lambda_(edges_.size(), 0.0) {
         std::vector<double> mass(x_.size(), 0.0);
         for (std::size_t t = 0; t < assembly.triangles.size(); ++t) {
             const Vec2f u = block.material_coords[3 * t + 1] - block.material_coords[3 * t];
@@ -252,7 +252,7 @@ DrapeReport drape(const Assembly& assembly, SizedBlock& block, const DistanceFie
         cloth.step(kStep, kGravity, 0.99, mirrored);
     }
     DrapeReport report;
-    const int last = static_cast<int>(0.1 / kShortStep);
+    const int last = std::min(options.finish_steps, static_cast<int>(0.1 / kShortStep));
     // Heavy cloth that still swings gets more time, at most three times as much, in thicker air.
     constexpr double kAtRest = 0.03;
     for (int round = 0; round < 3; ++round) {
@@ -264,7 +264,7 @@ DrapeReport drape(const Assembly& assembly, SizedBlock& block, const DistanceFie
             cloth.step(round == 0 && i < options.finish_steps / 2 ? kMediumStep : kShortStep,
                        kGravity, round == 0 ? 0.985 : 0.93, symmetric);
         }
-        report.rms_speed = cloth.way_since_mark(report.fastest) / (last * kShortStep);
+        report.rms_speed = cloth.way_since_mark(report.fastest) / (std::max(last, 1) * kShortStep);
         if (report.rms_speed < kAtRest) {
             break;
         }

@@ -12,10 +12,12 @@ struct DrapeOptions {
     double stretch_n_m = 600.0; ///< force per width per unit strain
     double bending = 0.10;      ///< share of a hinge's error mended per iteration
     double friction = 0.05;
-    int shrink_steps = 300;  ///< without gravity, from the first guess to the flat sizes
-    int settle_steps = 900;  ///< with gravity
-    int finish_steps = 1600; ///< with gravity, five times shorter: takes out the stretch
-    int iterations = 6;      ///< per step of 1/240 s
+    int shrink_steps = 300;   ///< without gravity, from the first guess to the flat sizes
+    int settle_steps = 900;   ///< with gravity
+    int finish_steps = 1600;  ///< with gravity, five times shorter: takes out the stretch
+    int iterations = 6;       ///< per step of 1/240 s
+    double rest_m_s = 0.05;   ///< a garment that still moves faster is refused
+    double most_strain = 1.0; ///< and one with an edge that is stretched further
 };
 
 /// An edge of the welded mesh and its length in the flat pattern (mean over both sides of a seam).

@@ -216,12 +216,12 @@ void check_drape(const Design& design, const Pattern& pattern, const Assembly& a
     if (report.dropped_m > 0.25) {
         refuse("fell off: it sank by %.2f m while it hung free", report.dropped_m, "");
     }
-    if (report.worst_strain > 1.0) {
+    if (report.worst_strain > design.drape.most_strain) {
         refuse("stretched by %.0f %% ", 100.0 * report.worst_strain,
                "where panel " + panels_at(pattern, assembly, report.worst_edge) +
                    " lies: a seam gapes there, or the panel is too small");
     }
-    if (report.rms_speed > 0.05) {
+    if (report.rms_speed > design.drape.rest_m_s) {
         refuse("did not come to rest: it still moves at %.3f m/s", report.rms_speed,
                ", most at panel " + panels_at(pattern, assembly, report.fastest));
     }

@@ -127,6 +127,7 @@ Design coarse(const std::string& block) {
     design.drape.shrink_steps = 20;
     design.drape.settle_steps = 10;
     design.drape.finish_steps = 10;
+    design.drape.rest_m_s = design.drape.most_strain = 1e9; // it has no time to come to rest
     return design;
 }
 
@@ -167,6 +168,17 @@ TEST(Block, EaseIsCutAroundTheBody) {
     EXPECT_GT(cloth_area(make_block(wide, {&order, 1})) - cloth_area(narrow), 0.05);
     EXPECT_EQ(narrow.manifest.id, "close-shirt");
     EXPECT_EQ(narrow.manifest.kind, "t-shirt");
+}
+
+TEST(Block, RefusesWhatDoesNotHang) {
+    const SizeOrder order = {"M", std::make_shared<const body::BodyModel>(
+                                      body::load_body_model(body::find_avatar("mannequin")))};
+    Design restless = coarse("t-shirt");
+    restless.drape.rest_m_s = 0.05;
+    EXPECT_ERROR(static_cast<void>(make_block(restless, {&order, 1})), "did not come to rest");
+    Design torn = coarse("t-shirt");
+    torn.drape.most_strain = 0.01;
+    EXPECT_ERROR(static_cast<void>(make_block(torn, {&order, 1})), "where panel '");
 }
 
 TEST(Block, RefusesWhatItCannotMake) {
