@@ -105,50 +105,42 @@ void Look::add_garment(const pipeline::WornGarment& garment, const std::string& 
 
     for (std::size_t s = 0; s < garment.surfaces.size(); ++s) {
         const auto& surface = garment.surfaces[s];
-        const std::vector<Triangle> drawn = garment.drawn_triangles(s);
-        if (drawn.empty()) {
-            surfaces_.push_back(render::MeshId::none);
-            continue;
-        }
-        render::MeshDescription description;
-        description.triangles = drawn;
-        description.texcoords = surface.primitive->texcoords;
-        description.positions = surface.positions;
-        description.normals = surface.normals;
-        surfaces_.push_back(renderer_.add_mesh(description));
-
-        const int index =
-            material_index(scene, *surface.primitive,
-                           colourway != nullptr ? colourway->material_variant : std::string());
-        render::Instance instance;
-        instance.mesh = surfaces_.back();
-        instance.material =
-            index == assets::kNone
-                ? renderer_.add_material(render::cloth_material(Vec3f::Constant(0.5f)))
-                : materials.at(static_cast<std::size_t>(index));
-        scene_.instances.push_back(instance);
+        add_surface(garment, s, surface.primitive->texcoords, [&] {
+            const int index =
+                material_index(scene, *surface.primitive,
+                               colourway != nullptr ? colourway->material_variant : std::string());
+            return index == assets::kNone
+                       ? renderer_.add_material(render::cloth_material(Vec3f::Constant(0.5f)))
+                       : materials.at(static_cast<std::size_t>(index));
+        });
     }
+}
+
+// Nothing where all of it is hidden.
+void Look::add_surface(const pipeline::WornGarment& garment, const std::size_t s,
+                       const std::span<const Vec2f> texcoords,
+                       const std::function<render::MaterialId()>& material) {
+    const std::vector<Triangle> drawn = garment.drawn_triangles(s);
+    if (drawn.empty()) {
+        surfaces_.push_back(render::MeshId::none);
+        return;
+    }
+    render::MeshDescription description;
+    description.triangles = drawn;
+    description.texcoords = texcoords;
+    description.positions = garment.surfaces[s].positions;
+    description.normals = garment.surfaces[s].normals;
+    surfaces_.push_back(renderer_.add_mesh(description));
+    render::Instance instance;
+    instance.mesh = surfaces_.back();
+    instance.material = material();
+    scene_.instances.push_back(instance);
 }
 
 void Look::add_mapped(const pipeline::WornGarment& garment, std::size_t index,
                       render::MaterialId material) {
-    for (std::size_t s = 0; s < garment.surfaces.size(); ++s) {
-        const std::vector<Triangle> drawn = garment.drawn_triangles(s);
-        if (drawn.empty()) {
-            surfaces_.push_back(render::MeshId::none);
-            continue;
-        }
-        render::MeshDescription description;
-        description.triangles = drawn;
-        description.texcoords = map_->texcoords(index, s);
-        description.positions = garment.surfaces[s].positions;
-        description.normals = garment.surfaces[s].normals;
-        surfaces_.push_back(renderer_.add_mesh(description));
-        render::Instance instance;
-        instance.mesh = surfaces_.back();
-        instance.material = material;
-        scene_.instances.push_back(instance);
-    }
+    for (std::size_t s = 0; s < garment.surfaces.size(); ++s)
+        add_surface(garment, s, map_->texcoords(index, s), [material] { return material; });
 }
 
 void Look::update() {

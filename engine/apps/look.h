@@ -7,6 +7,7 @@
 #include "render/renderer.h"
 #include "render/views.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -35,6 +36,9 @@ class Look {
   private:
     void add_body();
     void add_garment(const pipeline::WornGarment& garment, const std::string& variant);
+    void add_surface(const pipeline::WornGarment& garment, std::size_t s,
+                     std::span<const Vec2f> texcoords,
+                     const std::function<render::MaterialId()>& material);
     void add_mapped(const pipeline::WornGarment& garment, std::size_t index,
                     render::MaterialId material);
     void update_map();

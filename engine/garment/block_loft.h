@@ -5,6 +5,18 @@
 
 namespace toile::garment::block {
 
+/// A tube of level rings, a centimetre apart.
+struct TubeRings {
+    static constexpr int kSamples = 64;   ///< pieces of a ring
+    static constexpr double kStep = 0.01; ///< metres between rings
+    double low_m = 0.0;
+    std::vector<std::array<Vec3d, kSamples + 1>> rows; ///< at least 2
+
+    /// Bilinear; fraction 0..1 along the ring, heights are clamped to the tube's ends but the place
+    /// keeps `height_m`. Metres, world.
+    [[nodiscard]] Vec3d at(double fraction, double height_m) const;
+};
+
 /// Rings every centimetre, each widened until the tube is as long round as the cloth.
 class Loft {
   public:
@@ -19,9 +31,8 @@ class Loft {
     [[nodiscard]] double front_share(double height_m) const;
 
   private:
-    static constexpr int kSamples = 32; ///< on each of the front and back arcs
-    double low_ = 0.0;
-    std::vector<std::array<Vec3d, 2 * kSamples + 1>> rows_;
+    static constexpr int kSamples = TubeRings::kSamples / 2; ///< on each of front and back
+    TubeRings rings_;
 };
 
 } // namespace toile::garment::block

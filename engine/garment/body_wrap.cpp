@@ -11,7 +11,8 @@ namespace toile::garment::block {
 namespace {
 
 using body::Joint;
-constexpr double kRow = 0.01; // metres between rings
+constexpr double kRow = TubeRings::kStep;
+constexpr int kSamples = TubeRings::kSamples;
 
 double measured(const std::map<std::string, double>& values, const std::string& name,
                 const body::BodyModel& body) {
@@ -72,8 +73,8 @@ std::map<std::string, double> body_levels(const BodyProbe& body) {
 }
 
 LegLoft::LegLoft(const BodyProbe& body, const double low_m, const double high_m,
-                 const std::function<double(double)>& girth_m, const double ease_m)
-    : low_(low_m) {
+                 const std::function<double(double)>& girth_m, const double ease_m) {
+    rings_.low_m = low_m;
     const int rows = std::max(1, static_cast<int>(std::ceil((high_m - low_m) / kRow))) + 1;
     for (int r = 0; r < rows; ++r) {
         const double height = std::min(low_m + r * kRow, high_m);
@@ -88,7 +89,7 @@ LegLoft::LegLoft(const BodyProbe& body, const double low_m, const double high_m,
             girth += (hull[(i + 1) % hull.size()] - hull[i]).norm();
         }
         const double ease = std::max(ease_m, (girth_m(height) - girth) / (2.0 * std::numbers::pi));
-        auto& row = rows_.emplace_back();
+        auto& row = rings_.rows.emplace_back();
         for (int k = 0; k <= kSamples; ++k) {
             const double angle = 2.0 * std::numbers::pi * k / kSamples;
             const Vec2d ray(-std::cos(angle), std::sin(angle)); // inner side, front, outside
@@ -103,17 +104,7 @@ LegLoft::LegLoft(const BodyProbe& body, const double low_m, const double high_m,
 }
 
 Vec3d LegLoft::at(const double fraction, const double height_m) const {
-    const double f = std::clamp(fraction, 0.0, 1.0) * kSamples;
-    const double g =
-        std::clamp((height_m - low_) / kRow, 0.0, static_cast<double>(rows_.size() - 1));
-    const auto k = std::min(static_cast<std::size_t>(f), static_cast<std::size_t>(kSamples - 1));
-    const auto r = std::min(static_cast<std::size_t>(g), rows_.size() - 2);
-    const double s = f - static_cast<double>(k);
-    const double t = g - static_cast<double>(r);
-    Vec3d p = (1.0 - t) * ((1.0 - s) * rows_[r][k] + s * rows_[r][k + 1]) +
-              t * ((1.0 - s) * rows_[r + 1][k] + s * rows_[r + 1][k + 1]);
-    p.y() = height_m;
-    return p;
+    return rings_.at(fraction, height_m);
 }
 
 ArmTube::ArmTube(const BodyProbe& body, const double ease_m) {

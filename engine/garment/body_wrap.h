@@ -23,9 +23,7 @@ class LegLoft {
     [[nodiscard]] Vec3d at(double fraction, double height_m) const;
 
   private:
-    static constexpr int kSamples = 64;
-    double low_ = 0.0;
-    std::vector<std::array<Vec3d, kSamples + 1>> rows_;
+    TubeRings rings_;
 };
 
 /// A tube along the left arm, from the shoulder's tip over the elbow to beyond the wrist.
