@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <algorithm>
 #include <charconv>
 
@@ -27,6 +29,21 @@ imaging::Image side_by_side(const std::vector<imaging::Image>& pictures) {
             to = std::copy_n(p.pixels.begin() + y * row, row, to);
         }
     }
+    return out;
+}
+
+imaging::Image shrunk(const imaging::Image& picture, int height) {
+    imaging::Image out;
+    out.height = height;
+    out.width = std::max(1, picture.width * height / picture.height);
+    out.pixels.resize(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(height) * 4);
+    imaging::Image copy = picture; // OpenImageIO takes no constant pixels
+    const OIIO::ImageBuf from(OIIO::ImageSpec(copy.width, copy.height, 4, OIIO::TypeDesc::UINT8),
+                              copy.pixels.data());
+    OIIO::ImageBuf to(OIIO::ImageSpec(out.width, out.height, 4, OIIO::TypeDesc::UINT8),
+                      out.pixels.data());
+    if (!OIIO::ImageBufAlgo::resize(to, from, "", 0.0f, to.roi(), 1))
+        throw Error("a picture cannot be made smaller: " + to.geterror());
     return out;
 }
 

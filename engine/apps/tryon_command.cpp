@@ -7,6 +7,7 @@
 #include "apps/picture_folder.h"
 #include "apps/picture_options.h"
 #include "apps/run_output.h"
+#include "apps/still_look.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "garment/fit_file.h"
@@ -34,9 +35,6 @@ struct TryOnOptions {
     PictureOptions picture;
 };
 
-constexpr double kFramesPerSecond = 30.0;
-constexpr double kSettle_s = 2.0; // how long a still is left to come to hang
-
 class TryOn {
   public:
     TryOn(const TryOnOptions& options, const GlobalOptions& global)
@@ -55,14 +53,8 @@ class TryOn {
 
     // Stands in the pose until the cloth hangs, then draws every view side by side.
     void still() {
-        const body::Skeleton& skeleton = room_.body().model().skeleton;
-        const body::Pose pose = options_.pose.empty()
-                                    ? body::rest_pose(skeleton)
-                                    : body::load_pose(options_.pose, skeleton, &volumes_);
-        pipeline::MotionSource source(pipeline::still(pose), skeleton, kFramesPerSecond, kSettle_s);
-        pipeline::TryOnRun run(source, room_.person(), run_options_);
-        while (run.next()) {
-        }
+        const body::Pose pose = pose_from(options_.pose, room_.body().model().skeleton, volumes_);
+        const pipeline::RunReport report = leave_to_hang(room_, pose, run_options_);
         // Written first, so that it is there even if drawing fails.
         if (!options_.fit.empty())
             report_fit();
@@ -73,7 +65,7 @@ class TryOn {
                   map_);
         look.update();
         imaging::save_image(draw(look, bounds_now(room_.person())), options_.out);
-        finish(run);
+        finish(report);
     }
 
     // Every frame of a motion as a picture.
@@ -106,7 +98,7 @@ class TryOn {
             progress.frame();
         }
         pictures.make_film("tryon", kFramesPerSecond);
-        finish(run);
+        finish(run.report());
     }
 
   private:
@@ -138,13 +130,13 @@ class TryOn {
         }
     }
 
-    void finish(pipeline::TryOnRun& run) {
+    void finish(const pipeline::RunReport& report) {
         for (const std::string& choice : room_.choices())
             log::info(choice);
         for (const std::string& fault : room_.person().faults())
             if (!fit_) log::warning(fault);
         if (!options_.glb.empty()) save_look(room_.person(), options_.glb);
-        put_out_report(run.report(), room_, options_.report);
+        put_out_report(report, room_, options_.report);
     }
 
     const TryOnOptions& options_;
@@ -192,8 +184,10 @@ void add_tryon_commands(CLI::App& app, const GlobalOptions& global) {
         ->required();
     command->add_option("--size", options->size, "Size of the garments; auto: by the size chart")
         ->capture_default_str();
-    command->add_option("--pose", options->pose, "Pose or motion file; its first frame is taken")
-        ->type_name("FILE");
+    command
+        ->add_option("--pose", options->pose,
+                     "Pose or motion file: its first frame, or the one at a time")
+        ->type_name("FILE[@SECONDS]");
     command->add_option("--animation", options->animation, "Motion to play: .bvh, .json, .jsonl")
         ->type_name("FILE");
     command->add_option("--out", options->out, "Picture; with --animation a folder of pictures")

@@ -12,12 +12,8 @@ namespace {
 constexpr double kNsPerSecond = 1e9;
 constexpr double kLateAfter_s = 0.02; // live clock: a frame later than this is not worth showing
 
-// FNV-1a over the bytes.
-std::uint64_t add_to_digest(std::uint64_t digest, std::span<const Vec3f> positions) noexcept {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(positions.data());
-    for (std::size_t i = 0; i < positions.size_bytes(); ++i)
-        digest = (digest ^ bytes[i]) * 0x100000001b3ull;
-    return digest;
+std::span<const std::uint8_t> bytes_of(std::span<const Vec3f> positions) noexcept {
+    return {reinterpret_cast<const std::uint8_t*>(positions.data()), positions.size_bytes()};
 }
 
 Latency latency_of(const DurationHistogram& histogram) {
@@ -28,8 +24,7 @@ Latency latency_of(const DurationHistogram& histogram) {
 } // namespace
 
 TryOnRun::TryOnRun(FrameSource& source, DressedPerson& person, RunOptions options)
-    : source_(source), person_(person), options_(std::move(options)),
-      digest_(0xcbf29ce484222325ull) {
+    : source_(source), person_(person), options_(std::move(options)) {
     if (options_.measure_contact) contact_ = std::make_unique<ContactWatch>(person_);
 }
 
@@ -95,7 +90,7 @@ bool TryOnRun::next() {
     const double due = started_s_ + static_cast<double>(last_ns_ - first_ns_) / kNsPerSecond;
     if (options_.realtime) state_latency_.add(wall_seconds() - due);
     for (const WornGarment& garment : person_.garments())
-        digest_ = add_to_digest(digest_, garment.positions);
+        digest_.add(bytes_of(garment.positions));
     if (contact_) contact_->measure(person_, frames_ - 1);
     return true;
 }
@@ -129,10 +124,7 @@ RunReport TryOnRun::report() const {
         if (picture_latency_.count() > 0) report.picture_latency = latency_of(picture_latency_);
     }
     if (contact_) report.contact = contact_->worst();
-    std::array<char, 17> digest{};
-    std::snprintf(digest.data(), digest.size(), "%016llx",
-                  static_cast<unsigned long long>(digest_));
-    report.positions_digest = digest.data();
+    report.positions_digest = digest_.hex();
     report.seed = options_.seed;
     return report;
 }

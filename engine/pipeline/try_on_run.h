@@ -1,6 +1,7 @@
 // The main job: frame after frame from a source to a dressed person, with its figures.
 #pragma once
 
+#include "core/digest.h"
 #include "pipeline/contact_watch.h"
 #include "pipeline/dressed_person.h"
 #include "pipeline/frame_source.h"
@@ -60,7 +61,7 @@ class TryOnRun {
     double started_s_ = 0.0;
     std::uint64_t frames_ = 0;
     std::uint64_t dropped_ = 0;
-    std::uint64_t digest_;
+    Digest digest_;
     DurationHistogram state_latency_;
     DurationHistogram picture_latency_;
     std::unique_ptr<ContactWatch> contact_;

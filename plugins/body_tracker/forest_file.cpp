@@ -1,5 +1,6 @@
 #include "body_tracker/forest.h"
 #include "core/bytes.h"
+#include "core/digest.h"
 
 #include <array>
 #include <cstring>
@@ -12,12 +13,10 @@ constexpr std::array<char, 8> kMark = {'T', 'o', 'i', 'l', 'e', 'F', 'o', '1'};
 constexpr std::size_t kMaxBytes = 64u << 20;
 static_assert(sizeof(ForestNode) == 16);
 
-/// FNV-1a, 64 bits.
 std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
-    std::uint64_t sum = 0xcbf29ce484222325ull;
-    for (const std::uint8_t byte : bytes)
-        sum = (sum ^ byte) * 0x100000001b3ull;
-    return sum;
+    Digest digest;
+    digest.add(bytes);
+    return digest.value();
 }
 
 template <class T>
