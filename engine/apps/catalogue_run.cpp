@@ -68,7 +68,7 @@ class Crew {
     }
 
     void make(const Task& task) {
-        std::vector<std::string> words = {(program_folder() / "toile").string()};
+        std::vector<std::string> words = {program_};
         for (const std::string& word : same_options(global_))
             words.push_back(word);
         for (const std::string& word :
@@ -100,6 +100,7 @@ class Crew {
     const GlobalOptions& global_;
     std::vector<Task> tasks_;
     CatalogueRun& run_;
+    std::string program_ = program_file().string();
     std::atomic<std::size_t> next_ = 0;
     std::atomic<bool> stop_ = false;
     std::mutex mutex_;

@@ -1,5 +1,6 @@
-// toile garment list | check | new | draft | pack
+// toile garment list | check | new | draft | alter | pack
 #include "apps/commands.h"
+#include "apps/garment_alter_command.h"
 #include "apps/garment_block_command.h"
 #include "apps/garment_draft_command.h"
 #include "body/body_model.h"
@@ -210,13 +211,14 @@ void add_pack(CLI::App& garment) {
 
 } // namespace
 
-void add_garment_commands(CLI::App& app, const GlobalOptions& /*options*/) {
+void add_garment_commands(CLI::App& app, const GlobalOptions& options) {
     auto* const garment = app.add_subcommand("garment", "Garment packages: list, check, make");
     garment->require_subcommand(1);
     add_list(*garment);
     add_check(*garment);
     add_new(*garment);
     add_garment_draft(*garment, limits);
+    add_garment_alter(*garment, options, limits);
     add_pack(*garment);
 }
 

@@ -24,7 +24,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string command(const CataloguePlan& plan, const GlobalOptions& global) {
-    std::string out = quoted((program_folder() / "toile").string());
+    std::string out = quoted(program_file().string());
     for (const std::string& word : same_options(global))
         out += " " + quoted(word);
     return out + " catalogue " + quoted(fs::absolute(plan.file).string()) + " --out " +

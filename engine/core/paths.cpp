@@ -1,9 +1,18 @@
 #include "core/paths.h"
 
+#include "core/error.h"
+
 #include <cstdlib>
 #include <sstream>
 
 namespace toile {
+
+std::filesystem::path program_file() {
+    std::error_code code;
+    auto program = std::filesystem::read_symlink("/proc/self/exe", code);
+    if (code) throw Error("/proc/self/exe: cannot be read: " + code.message());
+    return program;
+}
 
 std::filesystem::path program_folder() {
     std::error_code code;

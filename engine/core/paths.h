@@ -7,6 +7,10 @@
 
 namespace toile {
 
+/// The running program.
+/// \throw Error when the system does not tell
+std::filesystem::path program_file();
+
 /// Folder of the running program.
 std::filesystem::path program_folder();
 

@@ -21,11 +21,10 @@ constexpr double kMostStrain = 0.05;
 constexpr double kGap = 0.03; ///< metres between charts
 
 /// A triangle with its true lengths, first corner at the origin, first side along x.
-Flat isometric(const geometry::TriangleMesh& mesh, std::uint32_t triangle) {
-    const Triangle& t = mesh.triangles[triangle];
-    const Vec3d a = mesh.positions[t[0]].cast<double>();
-    const Vec3d e = mesh.positions[t[1]].cast<double>() - a;
-    const Vec3d f = mesh.positions[t[2]].cast<double>() - a;
+Flat isometric(std::span<const Vec3f> positions, const Triangle& t) {
+    const Vec3d a = positions[t[0]].cast<double>();
+    const Vec3d e = positions[t[1]].cast<double>() - a;
+    const Vec3d f = positions[t[2]].cast<double>() - a;
     const double length = e.norm();
     return {Vec2d::Zero(), Vec2d(length, 0.0),
             Vec2d(e.dot(f) / length, e.cross(f).norm() / length)};
@@ -133,37 +132,50 @@ struct ChartMesh {
     Eigen::MatrixX2d flat;                   ///< (vertices)
 };
 
-/// Vertices of a chart by welded vertex and texture coordinates; laid out as the texture is.
-ChartMesh chart_from_texture(const geometry::TriangleMesh& mesh, const Chart& chart,
-                             std::span<const Vec2f> uv) {
+/// Vertices of a chart by welded vertex and texture coordinates, where these are; no truth.
+ChartMesh chart_of(const geometry::TriangleMesh& mesh, const Chart& chart,
+                   std::span<const Vec2f> uv) {
     ChartMesh out;
     std::map<std::tuple<std::uint32_t, float, float>, int> index;
     std::vector<Vec2d> flat;
-    double area = 0.0;
-    double flat_area = 0.0;
     for (const std::uint32_t t : chart) {
-        std::array<int, 3> corners{};
-        Flat here;
+        std::array<int, 3>& corners = out.corners.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec2f& m = uv[3 * t + k];
             const auto [at, added] = index.try_emplace({mesh.triangles[t][k], m.x(), m.y()},
                                                        static_cast<int>(flat.size()));
             if (added) flat.emplace_back(m.x(), m.y());
             corners[k] = at->second;
-            here[k] = m.cast<double>();
         }
-        out.corners.push_back(corners);
-        out.truth.push_back(isometric(mesh, t));
+    }
+    out.flat.resize(static_cast<Eigen::Index>(flat.size()), 2);
+    for (std::size_t i = 0; i < flat.size(); ++i)
+        out.flat.row(static_cast<Eigen::Index>(i)) = flat[i].transpose();
+    return out;
+}
+
+Flat flat_triangle(const ChartMesh& chart, std::size_t i) {
+    Flat out;
+    for (std::size_t k = 0; k < 3; ++k)
+        out[k] = chart.flat.row(chart.corners[i][k]).transpose();
+    return out;
+}
+
+/// Laid out as the texture is, in metres.
+ChartMesh chart_from_texture(const geometry::TriangleMesh& mesh, const Chart& chart,
+                             std::span<const Vec2f> uv) {
+    ChartMesh out = chart_of(mesh, chart, uv);
+    double area = 0.0;
+    double flat_area = 0.0;
+    for (std::size_t i = 0; i < chart.size(); ++i) {
+        out.truth.push_back(isometric(mesh.positions, mesh.triangles[chart[i]]));
         area += signed_area(out.truth.back());
-        flat_area += signed_area(here);
+        flat_area += signed_area(flat_triangle(out, i));
     }
     // A texture may be mirrored (image rows run down): u turns over.
     const double scale = std::sqrt(area / std::max(std::abs(flat_area), 1e-12));
-    out.flat.resize(static_cast<Eigen::Index>(flat.size()), 2);
-    for (std::size_t i = 0; i < flat.size(); ++i)
-        out.flat.row(static_cast<Eigen::Index>(i))
-            << (flat_area < 0.0 ? -scale : scale) * flat[i].x(),
-            scale * flat[i].y();
+    out.flat.col(0) *= flat_area < 0.0 ? -scale : scale;
+    out.flat.col(1) *= scale;
     return out;
 }
 
@@ -182,7 +194,7 @@ ChartMesh chart_from_projection(const geometry::TriangleMesh& mesh, const Chart&
             corners[k] = at->second;
         }
         out.corners.push_back(corners);
-        out.truth.push_back(isometric(mesh, t));
+        out.truth.push_back(isometric(mesh.positions, mesh.triangles[t]));
         normal += signed_area(out.truth.back()) * normal_of(mesh, t);
     }
     normal = normal.norm() > 1e-12 ? Vec3d(normal.normalized()) : Vec3d(Vec3d::UnitZ());
@@ -192,13 +204,6 @@ ChartMesh chart_from_projection(const geometry::TriangleMesh& mesh, const Chart&
     out.flat.resize(static_cast<Eigen::Index>(points.size()), 2);
     for (std::size_t i = 0; i < points.size(); ++i)
         out.flat.row(static_cast<Eigen::Index>(i)) << points[i].dot(u), points[i].dot(v);
-    return out;
-}
-
-Flat flat_triangle(const ChartMesh& chart, std::size_t i) {
-    Flat out;
-    for (std::size_t k = 0; k < 3; ++k)
-        out[k] = chart.flat.row(chart.corners[i][k]).transpose();
     return out;
 }
 
@@ -296,7 +301,103 @@ void write_chart(const Chart& triangles, const ChartMesh& chart, Shelf& shelf, F
     shelf.u += width + kGap;
 }
 
+/// How each flat triangle of a chart is stretched when its carried one is against the old one:
+/// symmetric, in the frame of the flat pattern.
+std::vector<Mat2d> stretches(const ChartMesh& chart, const Chart& triangles,
+                             const geometry::TriangleMesh& mesh, std::span<const Vec3f> carried) {
+    constexpr double kLeastArea = 1e-12; // m^2
+    std::vector<Mat2d> out;
+    out.reserve(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const Triangle& t = mesh.triangles[triangles[i]];
+        const Flat flat = flat_triangle(chart, i);
+        const Flat from = isometric(mesh.positions, t);
+        if (!(std::abs(signed_area(flat)) >= kLeastArea && signed_area(from) >= kLeastArea))
+            throw Error("a triangle of the garment has no area");
+        const Mat2d cloth = deformation(from, flat);
+        const Mat2d map = cloth * deformation(from, isometric(carried, t)) * cloth.inverse();
+        out.push_back(nearest_rotation(map).transpose() * map);
+        out.back() = 0.5 * (out.back() + out.back().transpose()).eval();
+    }
+    return out;
+}
+
+/// Evens stretches out over a hand's breadth: nobody cuts cloth by every fold that it had.
+void even_out(const Chart& triangles, const std::vector<std::array<int, 3>>& neighbours,
+              std::vector<Mat2d>& stretch) {
+    constexpr int kSteps = 60;
+    std::map<std::uint32_t, std::size_t> place;
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        place[triangles[i]] = i;
+    std::vector<std::vector<std::size_t>> beside(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        for (const int other : neighbours[triangles[i]]) {
+            const auto at = other < 0 ? place.end() : place.find(static_cast<std::uint32_t>(other));
+            if (at != place.end()) beside[i].push_back(at->second);
+        }
+    std::vector<Mat2d> next = stretch;
+    for (int step = 0; step < kSteps; ++step) {
+        for (std::size_t i = 0; i < stretch.size(); ++i) {
+            Mat2d sum = stretch[i];
+            for (const std::size_t j : beside[i])
+                sum += stretch[j];
+            next[i] = sum / static_cast<double>(1 + beside[i].size());
+        }
+        stretch.swap(next);
+    }
+}
+
+/// Undoes the turn and the shift that laying flat anew gave a chart as a whole.
+void hold_grain(const ChartMesh& before, ChartMesh& after) {
+    Mat2d sum = Mat2d::Zero();
+    Vec2d centre_before = Vec2d::Zero();
+    Vec2d centre_after = Vec2d::Zero();
+    double area = 0.0;
+    for (std::size_t i = 0; i < after.corners.size(); ++i) {
+        const Flat a = flat_triangle(before, i);
+        const Flat b = flat_triangle(after, i);
+        const double weight = std::abs(signed_area(a));
+        sum += weight * nearest_rotation(deformation(a, b));
+        centre_before += weight / 3.0 * (a[0] + a[1] + a[2]);
+        centre_after += weight / 3.0 * (b[0] + b[1] + b[2]);
+        area += weight;
+    }
+    const Mat2d back = nearest_rotation(sum).transpose();
+    for (Eigen::Index i = 0; i < after.flat.rows(); ++i) {
+        const Vec2d p = after.flat.row(i).transpose() - centre_after / area;
+        after.flat.row(i) = (centre_before / area + back * p).transpose();
+    }
+}
+
 } // namespace
+
+std::vector<Vec2f> flatten_carried(const geometry::TriangleMesh& mesh,
+                                   std::span<const Vec2f> coords, std::span<const Vec3f> carried) {
+    std::vector<Vec2f> out(coords.begin(), coords.end());
+    const std::vector<bool> all(mesh.triangles.size(), true);
+    const auto neighbours = neighbours_of(mesh);
+    const auto charts = grow_charts(neighbours, all, [&](auto, std::uint32_t a, std::uint32_t b) {
+        return !seam_between(mesh, coords, a, b);
+    });
+    for (const Chart& triangles : charts) {
+        const ChartMesh before = chart_of(mesh, triangles, coords);
+        ChartMesh after = before;
+        std::vector<Mat2d> stretch = stretches(before, triangles, mesh, carried);
+        even_out(triangles, neighbours, stretch);
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const Flat flat = flat_triangle(before, i);
+            after.truth.push_back({Vec2d::Zero(), stretch[i] * (flat[1] - flat[0]),
+                                   stretch[i] * (flat[2] - flat[0])});
+        }
+        lay_flat(after);
+        hold_grain(before, after);
+        for (std::size_t i = 0; i < triangles.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                out[3 * triangles[i] + k] =
+                    after.flat.row(after.corners[i][k]).transpose().cast<float>();
+    }
+    return out;
+}
 
 Flattening flatten(const geometry::TriangleMesh& mesh, std::span<const Vec2f> texcoords) {
     Flattening out;

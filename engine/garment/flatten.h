@@ -22,4 +22,13 @@ struct Flattening {
 [[nodiscard]] Flattening flatten(const geometry::TriangleMesh& mesh,
                                  std::span<const Vec2f> texcoords);
 
+/// The flat pattern of a garment that was carried from `mesh.positions` to `carried` (nv): charts
+/// as in `coords` (3 nf per corner), each triangle stretched along the cloth as its carried one is
+/// against the old one, evened out over a hand's breadth, laid flat as rigidly as possible; grain
+/// and place of each chart stay.
+/// (3 nf) \throw Error when a triangle has no area or a system cannot be solved
+[[nodiscard]] std::vector<Vec2f> flatten_carried(const geometry::TriangleMesh& mesh,
+                                                 std::span<const Vec2f> coords,
+                                                 std::span<const Vec3f> carried);
+
 } // namespace toile::garment

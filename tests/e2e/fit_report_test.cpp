@@ -120,6 +120,28 @@ TEST_F(FitReportTest, TheMakersEaseClassDecidesWhereItIsGiven) {
     EXPECT_EQ(row(regions, "region", "hip")["ease_class_from"], "design");
 }
 
+TEST_F(FitReportTest, AnAlteredGarmentKeepsItsRoomOnAnotherBody) {
+    const std::string altered = (folder_ / "altered").string();
+    const ProgramResult made = run_toile({"garment", "alter", "pencil-skirt", "--size", "M",
+                                          "--body", "women-xl", "--out", altered});
+    ASSERT_EQ(made.status, 0) << made.output;
+    EXPECT_THAT(made.output, testing::Not(HasSubstr("still to mend")));
+    EXPECT_EQ(run_toile({"garment", "check", altered}).status, 0);
+    const json before = fit("pencil-skirt", {"--body", "women-m", "--size", "M"});
+    const json after = fit(altered, {"--body", "women-xl"});
+    for (const char* girth : {"waist_girth", "hip_girth"}) {
+        const json& a = row(before["garments"][0]["measurements"], "name", girth);
+        const json& b = row(after["garments"][0]["measurements"], "name", girth);
+        EXPECT_GT(b["body_m"].get<double>(), a["body_m"].get<double>() + 0.07);
+        EXPECT_NEAR(b["ease_m"].get<double>(), a["ease_m"].get<double>(), 0.015) << girth;
+    }
+    EXPECT_LE(after["strain"]["rms"].get<double>(), 0.03);
+    const ProgramResult again =
+        run_toile({"garment", "alter", "pencil-skirt", "--body", "women-xl", "--out", altered});
+    EXPECT_EQ(again.status, 1);
+    EXPECT_THAT(again.output, HasSubstr("holds a garment.json already"));
+}
+
 TEST_F(FitReportTest, OneThreadAndTwoWriteTheSameBytes) {
     (void)fit("t-shirt", {"--fit-map", "ease", "--threads", "1"});
     const std::string first = bytes(fit_), picture = bytes(png_);
