@@ -129,8 +129,9 @@ void make_new(NewOptions& options) {
     std::error_code code;
     if (fs::exists(options.out / "garment.json", code))
         throw Error(options.out.string() + ": holds a garment.json already; choose another --out");
-    std::optional<geometry::TriangleMesh> body;
-    if (!options.import.made_on.empty()) body = body_of(options.import.made_on);
+    std::optional<body::BodyModel> body;
+    if (!options.import.made_on.empty())
+        body = body::load_body_model(body::find_avatar(options.import.made_on));
     const auto import =
         garment::import_garment(options.mesh, options.import, body ? &*body : nullptr);
     garment::write_package(import.package, options.out);

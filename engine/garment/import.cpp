@@ -4,6 +4,8 @@
 #include "garment/flatten.h"
 #include "garment/manifest_reader.h"
 #include "garment/mend.h"
+#include "garment/openings.h"
+#include "garment/pose_match.h"
 #include "garment/size_reader.h"
 #include "geometry/nearest_surface.h"
 
@@ -114,6 +116,37 @@ std::vector<Vec2f> corner_texcoords(const MendedMesh& mended, const Joined& join
     return out;
 }
 
+/// True when it was modelled in another pose; the scene then holds it in this one.
+bool lay_into_pose(const body::BodyModel& body, const Joined& joined, assets::Scene& render,
+                   std::vector<std::string>& findings) {
+    std::vector<Vec3f> positions = joined.positions;
+    const PoseMatch match = match_pose(body, joined.triangles, positions);
+    if (!match.moved()) return false;
+    std::size_t v = 0;
+    for (assets::Mesh& mesh : render.meshes)
+        for (assets::Primitive& p : mesh.primitives)
+            for (std::size_t i = 0; i < p.positions.size(); ++i, ++v) {
+                p.positions[i] = positions[v];
+                if (!p.normals.empty()) p.normals[i] = (match.turns[v] * p.normals[i]).normalized();
+            }
+    findings.push_back(match.text());
+    return true;
+}
+
+/// Tells what the mesh is made of; true when pins are proposed.
+bool propose(const body::BodyModel& body, const geometry::TriangleMesh& garment, Import& out) {
+    const std::vector<Piece> pieces = find_pieces(garment, body);
+    for (std::string& line : tell_pieces(pieces))
+        out.findings.push_back(std::move(line));
+    out.package.manifest.pins = propose_pins(garment, pieces);
+    for (const PinGroup& group : out.package.manifest.pins)
+        out.findings.push_back("pins proposed: " + group.name +
+                               (group.mask.empty() ? " (all of a hat or of shoes)"
+                                                   : " (the upper border, so that it does not "
+                                                     "slip down)"));
+    return !out.package.manifest.pins.empty();
+}
+
 Manifest start_manifest(const ImportOptions& options) {
     if (!is_identifier(options.id))
         throw Error("the id '" + options.id +
@@ -150,8 +183,9 @@ Fabric usual_fabric(const std::string& kind) {
 }
 
 Import import_garment(const std::filesystem::path& mesh, const ImportOptions& options,
-                      const geometry::TriangleMesh* body) {
+                      const body::BodyModel* body) {
     Import out;
+    const bool labelled = body != nullptr && !body->parts.empty();
     out.package.manifest = start_manifest(options);
     const assets::Scene scene = assets::load_scene(mesh);
     GarmentSize size;
@@ -162,15 +196,17 @@ Import import_garment(const std::filesystem::path& mesh, const ImportOptions& op
     if (joined.triangles.empty()) throw FileError(mesh.string(), "has no mesh");
 
     const Placement placement = body != nullptr
-                                    ? place_on_body(joined.positions, *body, options.unit)
+                                    ? place_on_body(joined.positions, body->rest, options.unit)
                                     : place_freely(joined.positions, options.unit);
     transform(size.render, placement.transform());
     joined = join(size.render);
     tell_placement(placement, options, out.findings);
+    if (labelled && lay_into_pose(*body, joined, size.render, out.findings))
+        joined = join(size.render);
 
     MendedMesh mended = mend(joined.positions, joined.triangles);
     if (body != nullptr) {
-        const std::size_t turned = turn_outwards(*body, mended);
+        const std::size_t turned = turn_outwards(body->rest, mended);
         if (turned > 0) out.findings.emplace_back("it was inside out: turned");
     }
     tell_mending(mended, out.findings);
@@ -184,6 +220,7 @@ Import import_garment(const std::filesystem::path& mesh, const ImportOptions& op
             flat.charts, joined.textured ? "along the texture's seams" : "by direction",
             100.0 * flat.mean_strain, flat.loose_triangles));
     if (scene.textures.empty()) out.findings.emplace_back("it has no textures: one plain colour");
+    const bool pinned = labelled && propose(*body, mended.mesh, out);
 
     size.simulation = std::move(mended.mesh);
     size.material_coords = flat.coords;
@@ -191,8 +228,10 @@ Import import_garment(const std::filesystem::path& mesh, const ImportOptions& op
     size.entry.mesh = options.size_name + ".glb";
     out.package.manifest.sizes.push_back(size.entry);
     out.package.sizes.push_back(std::move(size));
-    out.findings.emplace_back("to fill in by hand in garment.json: maker, licence, kind, fabric, "
-                              "size chart, pins");
+    out.findings.emplace_back(
+        std::string(
+            "to fill in by hand in garment.json: maker, licence, kind, fabric, size chart") +
+        (pinned ? "" : ", pins where it must not slip"));
     return out;
 }
 

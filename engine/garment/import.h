@@ -24,9 +24,12 @@ struct Import {
 };
 
 /// Reads .glb, .gltf, .fbx or .obj; finds unit, axes and place on `body` (null: none), mends the
-/// mesh, makes material coordinates. The mesh as it came is the render mesh. \throw Error
+/// mesh, makes material coordinates; on a body with its skeleton it also lays a garment of another
+/// pose into the body's, tells its pieces and openings, and proposes pins. The mesh as it came is
+/// the render mesh. `body` (null: none) at rest; without part labels it counts as a surface only.
+/// \throw Error
 [[nodiscard]] Import import_garment(const std::filesystem::path& mesh, const ImportOptions& options,
-                                    const geometry::TriangleMesh* body);
+                                    const body::BodyModel* body);
 
 /// Usual fabric of a kind of garment: jersey for a t-shirt, denim for jeans, ...
 [[nodiscard]] Fabric usual_fabric(const std::string& kind);

@@ -60,6 +60,8 @@ double worst_edge_error(const GarmentSize& size) {
 
 TEST(Import, FindsUnitAxesAndPlace) {
     const test::Figure figure = test::figure();
+    body::BodyModel body;
+    body.rest = figure.mesh;
     struct Case {
         Unit unit;
         bool z_up;
@@ -75,7 +77,7 @@ TEST(Import, FindsUnitAxesAndPlace) {
             move.rotate(Eigen::AngleAxisf(0.5f * std::numbers::pi_v<float>, Vec3f::UnitX()));
         move.translate(c.shift);
         const test::TemporaryFolder folder;
-        const Import import = import_garment(shirt_file(folder, move), options(), &figure.mesh);
+        const Import import = import_garment(shirt_file(folder, move), options(), &body);
         const auto& mesh = import.package.sizes[0].simulation;
         const auto truth = test::shirt_on(figure, 0.012f, 0.03f);
         ASSERT_EQ(mesh.triangles.size(), truth.triangles.size());
@@ -135,8 +137,9 @@ TEST(Import, ArtistsGarmentsBecomeSoundPackages) {
     geometry::SeamedLayout layout;
     const auto body_scene = assets::load_scene(scene / "body.obj");
     const auto& primitive = body_scene.meshes[0].primitives[0];
-    auto body = geometry::weld(primitive.positions, primitive.triangles, {}, layout);
-    for (Vec3f& p : body.positions)
+    body::BodyModel body;
+    body.rest = geometry::weld(primitive.positions, primitive.triangles, {}, layout);
+    for (Vec3f& p : body.rest.positions)
         p.y() += 0.81676f; // on the floor
     std::size_t count = 0;
     for (const char* const name : {"female_casualsuit01", "female_elegantsuit01",
