@@ -1,8 +1,9 @@
-// toile garment list | check | new | draft | alter | pack
+// toile garment list | check | new | draft | alter | thumbnail | pack
 #include "apps/commands.h"
 #include "apps/garment_alter_command.h"
 #include "apps/garment_block_command.h"
 #include "apps/garment_draft_command.h"
+#include "apps/garment_thumbnail_command.h"
 #include "body/body_model.h"
 #include "core/error.h"
 #include "garment/import.h"
@@ -57,6 +58,7 @@ void list(bool as_json) {
                                {"maker", m.maker},
                                {"licence", m.licence},
                                {"made_on", m.made_on},
+                               {"thumbnail", m.thumbnail},
                                {"vertices", package->sizes.front().simulation.positions.size()},
                                {"source", source.string()}});
             } else {
@@ -220,6 +222,7 @@ void add_garment_commands(CLI::App& app, const GlobalOptions& options) {
     add_new(*garment);
     add_garment_draft(*garment, limits);
     add_garment_alter(*garment, options, limits);
+    add_garment_thumbnail(*garment, options);
     add_pack(*garment);
 }
 

@@ -79,6 +79,7 @@ Alteration alter(const GarmentPackage& package, const GarmentSize& size,
     manifest.id = options.id;
     if (!options.name.empty()) manifest.name = options.name;
     manifest.made_on.clear();
+    manifest.thumbnail.clear(); // it shows the old one
     GarmentSize made = size;
     made.entry.name = options.size_name;
     made.entry.mesh = options.id + ".glb";

@@ -259,6 +259,7 @@ void read_identity(JsonObject& root, Manifest& m, Faults& faults) {
     with([&] { m.kind = read_identifier(root, "kind"); });
     with([&] { m.layer = static_cast<std::uint32_t>(root.integer("layer", 0, 15)); });
     if (root.has("made_on")) with([&] { m.made_on = read_identifier(root, "made_on"); });
+    if (root.has("thumbnail")) with([&] { m.thumbnail = read_path(root, "thumbnail"); });
     if (root.has("ease")) with([&] { m.ease_m = read_quantity(root, kEase); });
     if (root.has("ease_class")) with([&] { m.ease_class = read_ease_intent(root); });
 }

@@ -64,7 +64,8 @@ struct Manifest {
     std::string licence; ///< SPDX or words
     std::string kind;    ///< "t-shirt", "skirt", ...
     std::uint32_t layer = 1;
-    std::string made_on; ///< avatar id of sizes that name none, or "" when unknown
+    std::string made_on;   ///< avatar id of sizes that name none, or "" when unknown
+    std::string thumbnail; ///< file: a small picture of it, or ""
     double ease_m = 0.004;
     EaseIntent ease_class; ///< how much room the design is meant to give; empty: not said
     Fabric fabric;

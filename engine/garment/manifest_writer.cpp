@@ -74,6 +74,7 @@ std::string write_manifest(const Manifest& m) {
               {"name", m.name},    {"maker", m.maker}, {"licence", m.licence},
               {"kind", m.kind},    {"layer", m.layer}};
     if (!m.made_on.empty()) j["made_on"] = m.made_on;
+    if (!m.thumbnail.empty()) j["thumbnail"] = m.thumbnail;
     j["ease"] = rounded(m.ease_m);
     if (m.ease_class.all != EaseClass::invalid) j["ease_class"] = name_of(m.ease_class.all);
     for (const auto& [region, ease_class] : m.ease_class.regions)

@@ -5,6 +5,7 @@
 #include "garment/package_checks.h"
 #include "garment/package_files.h"
 #include "garment/size_reader.h"
+#include "imaging/image.h"
 
 #include <algorithm>
 #include <map>
@@ -57,6 +58,17 @@ class BodiesMadeOn {
     std::map<std::string, std::optional<geometry::TriangleMesh>> bodies_;
 };
 
+void check_thumbnail(const PackageFiles& files, const std::string& thumbnail) {
+    constexpr int kMostSide = 1024;
+    const fs::path file = files.resolve(thumbnail, "garment.json");
+    try {
+        (void)imaging::load_image(file, kMostSide);
+    } catch (const Error& e) {
+        throw PackageError(
+            {FaultCode::mesh_file, files.shown("garment.json") + ": /thumbnail: " + e.what()});
+    }
+}
+
 GarmentPackage read_package(const fs::path& source, const PackageLimits& limits, Faults& faults) {
     GarmentPackage package;
     package.source = source;
@@ -64,6 +76,9 @@ GarmentPackage read_package(const fs::path& source, const PackageLimits& limits,
         const PackageFiles files(source, limits);
         const std::string shown = files.shown("garment.json");
         package.manifest = read_manifest(read_manifest_text(files), shown, faults);
+        if (!package.manifest.thumbnail.empty())
+            attempt(faults, FaultCode::missing_file,
+                    [&] { check_thumbnail(files, package.manifest.thumbnail); });
         BodiesMadeOn bodies(limits);
         for (const SizeEntry& entry : package.manifest.sizes) {
             GarmentSize size;

@@ -125,6 +125,7 @@ void pack_package(const fs::path& folder, const fs::path& zip) {
     const auto package = load_package(folder);
     const PackageFiles files(folder, {});
     std::set<std::string> names = {"garment.json"};
+    if (!package->manifest.thumbnail.empty()) names.insert(package->manifest.thumbnail);
     for (const GarmentSize& size : package->sizes)
         for (const std::string& mesh : {size.entry.mesh, size.entry.render}) {
             if (mesh.empty()) continue;

@@ -3,6 +3,7 @@
 #include "garment/block_drape.h"
 #include "garment/contact_metrics.h"
 #include "garment/package.h"
+#include "imaging/image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,6 +82,8 @@ TEST_P(ShippedGarment, HasSixSizesTwoColourwaysAndHangsOnEachBody) {
     ASSERT_EQ(package->sizes.size(), names.size());
     EXPECT_GE(package->manifest.variants.size(), 2u);
     EXPECT_FALSE(package->manifest.sizes[0].chart.empty());
+    const auto small = imaging::load_image(package->source / package->manifest.thumbnail);
+    EXPECT_GE(small.width, 200);
     for (std::size_t i = 0; i < names.size(); ++i) {
         const GarmentSize& size = package->sizes[i];
         SCOPED_TRACE(size.entry.name);

@@ -276,6 +276,15 @@ std::vector<Case> file_cases() {
          [](Animal& a) {
              write_text(a.folder / "S.glb", "a mesh, honestly, with many vertices\n");
          }},
+        {"missing_thumbnail", missing_file, "'small.png' does not exist",
+         [](Animal& a) { a.json([](Json& j) { j["thumbnail"] = "small.png"; }); }},
+        {"thumbnail_upwards", unsafe_path, "holds '../'",
+         [](Animal& a) { a.json([](Json& j) { j["thumbnail"] = "../small.png"; }); }},
+        {"thumbnail_is_text", mesh_file, "/thumbnail: ",
+         [](Animal& a) {
+             write_text(a.folder / "small.png", "I am a picture");
+             a.json([](Json& j) { j["thumbnail"] = "small.png"; });
+         }},
         {"missing_texture", missing_file, "'red.png' does not exist",
          [](Animal& a) { external_image(a, "red.png"); }},
         {"texture_upwards", unsafe_path, "holds '../'",
