@@ -154,6 +154,8 @@ function(toile_link_data)
     foreach(folder avatars garments)
         file(CREATE_LINK "${CMAKE_SOURCE_DIR}/${folder}" "${CMAKE_BINARY_DIR}/bin/${folder}" SYMBOLIC)
     endforeach()
-    file(CREATE_LINK "${CMAKE_SOURCE_DIR}/engine/apps/freesewing" "${CMAKE_BINARY_DIR}/bin/freesewing"
-         SYMBOLIC)
+    foreach(folder freesewing report)
+        file(CREATE_LINK "${CMAKE_SOURCE_DIR}/engine/apps/${folder}" "${CMAKE_BINARY_DIR}/bin/${folder}"
+             SYMBOLIC)
+    endforeach()
 endfunction()
