@@ -3,6 +3,7 @@
 #include "apps/freesewing.h"
 #include "assets/files.h"
 #include "body/body_file.h"
+#include "core/bytes.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "garment/block_package.h"
@@ -14,8 +15,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 namespace toile::apps {
 namespace {
@@ -185,12 +188,52 @@ void list_pieces(const std::vector<block::PatternPiece>& pieces) {
     }
 }
 
+/// Keeps what a drape was tried with, and how it ended, beside where the package would be.
+fs::path keep_refused(const block::Design& design, const block::DrapeRefused& refused,
+                      const fs::path& out) {
+    const auto number = [](double value) {
+        return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+    };
+    nlohmann::ordered_json json;
+    json["schema"] = 1;
+    json["id"] = design.id;
+    json["size"] = refused.size();
+    json["reason"] = refused.what();
+    json["panel"] = refused.panel();
+    json["edge_m"] = design.edge_m;
+    const block::DrapeOptions& o = refused.options();
+    json["drape"] = {{"clearance_m", o.clearance_m},   {"density_kg_m2", o.density_kg_m2},
+                     {"stretch_n_m", o.stretch_n_m},   {"bending", o.bending},
+                     {"friction", o.friction},         {"shrink_steps", o.shrink_steps},
+                     {"settle_steps", o.settle_steps}, {"finish_steps", o.finish_steps},
+                     {"iterations", o.iterations},     {"rest_m_s", o.rest_m_s},
+                     {"most_strain", o.most_strain}};
+    const block::DrapeReport& r = refused.report();
+    json["result"] = {{"speed_m_s", number(r.rms_speed)},
+                      {"strain", number(r.worst_strain)},
+                      {"sank_m", number(r.dropped_m)}};
+    fs::create_directories(out);
+    write_text(out / "refused.json", json.dump(2) + "\n");
+    return out / "refused.json";
+}
+
+garment::GarmentPackage make(const block::Design& design, const DraftOptions& options,
+                             const std::vector<block::SizeOrder>& orders) {
+    try {
+        return block::make_block(design, orders, watch_of(options));
+    } catch (const block::DrapeRefused& refused) {
+        throw Error(std::string(refused.what()) + " (what it was tried with: " +
+                    keep_refused(design, refused, options.out).string() + ")");
+    }
+}
+
 void write(const block::Design& design, const DraftOptions& options,
            const std::vector<block::SizeOrder>& orders, const garment::PackageLimits& limits) {
     if (options.out.empty()) {
         throw UsageError("garment draft: --out is required (a folder to write)");
     }
-    const garment::GarmentPackage package = block::make_block(design, orders, watch_of(options));
+    const garment::GarmentPackage package = make(design, options, orders);
+    fs::remove(options.out / "refused.json");
     garment::write_package(package, options.out, true);
     for (const auto& size : package.sizes) {
         std::printf("size %s: %zu vertices, %zu triangles\n", size.entry.name.c_str(),

@@ -205,25 +205,29 @@ std::string panels_at(const Pattern& pattern, const Assembly& assembly,
 // Says why a garment does not hang, if it does not.
 void check_drape(const Design& design, const Pattern& pattern, const Assembly& assembly,
                  const DrapeReport& report, const std::string& size) {
-    const auto refuse = [&](const char* format, const double value, const std::string& rest) {
+    const auto refuse = [&](const char* format, const double value, const std::string& rest,
+                            const std::string& panel) {
         std::array<char, 96> text{};
         std::snprintf(text.data(), text.size(), format, value);
-        throw Error(design.id + ", size " + size + ": " + text.data() + rest);
+        throw DrapeRefused(design.id + ", size " + size + ": " + text.data() + rest, size,
+                           design.drape, report, panel);
     };
     if (!std::isfinite(report.rms_speed) || !std::isfinite(report.worst_strain)) {
-        refuse("the cloth blew up (%.0f)", 0.0, "");
+        refuse("the cloth blew up (%.0f)", 0.0, "", "");
     }
     if (report.dropped_m > 0.25) {
-        refuse("fell off: it sank by %.2f m while it hung free", report.dropped_m, "");
+        refuse("fell off: it sank by %.2f m while it hung free", report.dropped_m, "", "");
     }
     if (report.worst_strain > design.drape.most_strain) {
+        const std::string panel = panels_at(pattern, assembly, report.worst_edge);
         refuse("stretched by %.0f %% ", 100.0 * report.worst_strain,
-               "where panel " + panels_at(pattern, assembly, report.worst_edge) +
-                   " lies: a seam gapes there, or the panel is too small");
+               "where panel " + panel + " lies: a seam gapes there, or the panel is too small",
+               panel);
     }
     if (report.rms_speed > design.drape.rest_m_s) {
+        const std::string panel = panels_at(pattern, assembly, report.fastest);
         refuse("did not come to rest: it still moves at %.3f m/s", report.rms_speed,
-               ", most at panel " + panels_at(pattern, assembly, report.fastest));
+               ", most at panel " + panel, panel);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "support/temporary_folder.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 namespace toile::test {
 namespace {
@@ -71,7 +72,13 @@ TEST_F(DraftTest, AGarmentCodePatternIsMadeAndOneThatIsTooNarrowSaysSo) {
     EXPECT_EQ(sock.status, 1);
     EXPECT_THAT(sock.output, HasSubstr("stretched by"));
     EXPECT_THAT(sock.output, HasSubstr("panel"));
-    EXPECT_FALSE(fs::exists(folder_ / "sock"));
+    EXPECT_THAT(sock.output, HasSubstr("refused.json"));
+    EXPECT_FALSE(fs::exists(folder_ / "sock" / "garment.json"));
+    const auto bytes = read_bytes(folder_ / "sock" / "refused.json", 1u << 16);
+    const auto kept = nlohmann::json::parse(bytes.begin(), bytes.end());
+    EXPECT_EQ(kept["edge_m"], 0.03);
+    EXPECT_FALSE(kept["panel"].get<std::string>().empty());
+    EXPECT_GT(kept["result"]["strain"], kept["drape"]["most_strain"]);
 }
 
 TEST_F(DraftTest, WhatCannotBeDraftedIsNamed) {

@@ -179,6 +179,15 @@ TEST(Block, RefusesWhatDoesNotHang) {
     Design torn = coarse("t-shirt");
     torn.drape.most_strain = 0.01;
     EXPECT_ERROR(static_cast<void>(make_block(torn, {&order, 1})), "where panel '");
+    try {
+        static_cast<void>(make_block(torn, {&order, 1}));
+        ADD_FAILURE() << "not refused";
+    } catch (const DrapeRefused& refused) {
+        EXPECT_EQ(refused.size(), "M");
+        EXPECT_FALSE(refused.panel().empty());
+        EXPECT_EQ(refused.options().most_strain, 0.01);
+        EXPECT_GT(refused.report().worst_strain, 0.01);
+    }
 }
 
 TEST(Block, RefusesWhatItCannotMake) {
