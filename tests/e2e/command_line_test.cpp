@@ -6,6 +6,7 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace toile::test {
 namespace {
@@ -33,10 +34,28 @@ TEST(CommandLine, HelpAndVersionSucceed) {
 }
 
 TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
-    for (const char* command : {"mirror", "tryon", "compare", "view", "measure", "fit"}) {
+    for (const char* command :
+         {"mirror", "tryon", "compare", "view", "measure", "fit", "catalogue", "report", "bench"}) {
         const ProgramResult help = run_toile({command, "--help"});
         EXPECT_EQ(help.status, 0) << command;
         EXPECT_THAT(help.output, HasSubstr("Example: toile")) << command;
+    }
+}
+
+TEST(CommandLine, BenchTellsEveryStageAgainstItsBaseline) {
+    const TemporaryFolder folder;
+    const std::string file = (folder / "bench.json").string();
+    const ProgramResult result = run_toile(
+        {"bench", "--garment", "skirt", "--frames", "3", "--picture", "96x96", "--json", file});
+    ASSERT_EQ(result.status, 0) << result.output;
+    std::ifstream in(file);
+    const auto json = nlohmann::json::parse(in);
+    EXPECT_EQ(json["frames"], 3);
+    for (const char* stage : {"skinning", "targets", "cloth", "surfaces", "drawing", "compute"}) {
+        EXPECT_THAT(result.output, HasSubstr(stage));
+        const auto& one = json["stages"][stage];
+        EXPECT_NEAR(one["ratio"].get<double>(),
+                    one["median_ms"].get<double>() / json["baseline_ms"].get<double>(), 1e-9);
     }
 }
 
