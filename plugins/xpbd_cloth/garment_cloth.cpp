@@ -158,7 +158,7 @@ GarmentCloth::GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest
         }
     }
     leashed_.reserve(free_.size());
-    for (std::vector<Vec4>* buffer : {&target_before_, &target_after_}) {
+    for (std::vector<Vec4>* buffer : {&target_before_, &target_after_, &noted_, &mean_velocity_}) {
         buffer->resize(start_.size());
         std::transform(start_.begin(), start_.end(), buffer->begin(), to_vec4);
     }
@@ -190,6 +190,8 @@ void GarmentCloth::reset() noexcept {
     std::fill(rows_.v.begin(), rows_.v.end(), Vec4::Zero());
     since_damped_ = 0.0f;
     velocities_known_ = true;
+    std::copy(target_after_.begin(), target_after_.end(), noted_.begin());
+    since_noted_ = 0.0f;
     contacts_.reset();
 }
 
@@ -202,10 +204,22 @@ void GarmentCloth::find_contacts(const MovingBody& body, const Interval& interva
     }
     period_ = interval.length() * static_cast<float>(interval.of);
     const std::size_t count = start_.size();
+    note_motion(interval.length());
     contacts_.refresh(
-        body, rows_.x.first(count), rows_.v.first(count),
+        body, rows_.x.first(count), mean_velocity_,
         {half, since_last, half, period_, interval.index, interval.of, false, interval.frame},
         contact_);
+}
+
+/// The velocity of one substep trembles, and over an interval that adds up to centimetres: what
+/// lies ahead is told from the way that the cloth went since the last look.
+void GarmentCloth::note_motion(float until_next) noexcept {
+    const float per_second = since_noted_ > 0.0f ? 1.0f / since_noted_ : 0.0f;
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+        mean_velocity_[i] = per_second * (rows_.x[i] - noted_[i]);
+        noted_[i] = rows_.x[i];
+    }
+    since_noted_ = until_next;
 }
 
 void GarmentCloth::move(const Substep& now) noexcept {
