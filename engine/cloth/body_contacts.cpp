@@ -163,18 +163,26 @@ void BodyContacts::look_around(const MovingBody& body, const Vec4& p, std::size_
 }
 
 void BodyContacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
-                                const SurfacePoint& own, const ContactSettings& settings,
+                                const SurfacePoint& nearest, const ContactSettings& settings,
                                 float period) noexcept {
+    SurfacePoint own = nearest;
+    SurfacePoint other;
+    if (other_triangle_[sample] != kNone) {
+        other =
+            body.walk(p, other_triangle_[sample], mask_for(sample, body, other_triangle_[sample]));
+        // A sleeve stays with its own arm where that runs into another part.
+        const std::uint8_t home = body.joint_of(anchor_[sample]);
+        if (other.triangle != kNone && same_part(body.joint_of(other.triangle), home) &&
+            !same_part(body.joint_of(own.triangle), home) &&
+            signed_distance(body, p, other) < 0.0f) {
+            std::swap(own, other);
+        }
+    }
     own_triangle_[sample] = own.triangle;
     own_place_[sample] = {own.bary[0], own.bary[1], own.bary[2]};
     own_plane_[sample] = plane_at(body, p, own);
     drift_[sample] = 0.0f;
     squeezed_[sample] = 0;
-    if (other_triangle_[sample] == kNone) {
-        return;
-    }
-    const SurfacePoint other =
-        body.walk(p, other_triangle_[sample], mask_for(sample, body, other_triangle_[sample]));
     if (other.triangle == kNone) {
         other_triangle_[sample] = kNone;
         return;
@@ -338,6 +346,21 @@ void BodyContacts::list_centre(const Vec4& p, const Vec4& v, std::size_t sample,
     }
 }
 
+/// Where a sample will be: it goes on as it went, and near the skin as much faster as that.
+Vec4 BodyContacts::ahead(const MovingBody& body, const Vec4& p, const Vec4& v, std::size_t sample,
+                         float seconds) const noexcept {
+    const Plane& plane = own_plane_[sample];
+    if (seconds == 0.0f || is_nowhere(plane.normal)) {
+        return p + seconds * v;
+    }
+    SurfacePoint at;
+    at.triangle = own_triangle_[sample];
+    std::copy(own_place_[sample].begin(), own_place_[sample].end(), at.bary);
+    const float height = plane.normal.dot(p) - plane.normal.w();
+    const float carried = std::clamp(2.0f - height / kNearSkin, 0.0f, 1.0f);
+    return p + seconds * (v + carried * direction(body.velocity_at(at) - plane.velocity));
+}
+
 void BodyContacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
                            const Refresh& when, const ContactSettings& settings) noexcept {
     own_vertices_.clear();
@@ -346,14 +369,15 @@ void BodyContacts::refresh(const MovingBody& body, std::span<const Vec4> x, std:
     own_centres_.clear();
     other_centres_.clear();
     for (std::uint32_t i = 0; i < vertex_count_; ++i) {
-        const Vec4 p = x[i] + when.ahead * v[i];
+        const Vec4 p = ahead(body, x[i], v[i], i, when.ahead);
         refresh_vertex(body, p, v[i], i, when, settings);
         list_vertex(p, v[i], i, when.until_next);
     }
     for (std::size_t t = 0; t < sample_count() - vertex_count_; ++t) {
         const Triangle& corner = triangles_[t];
         const Vec4 speed = (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0f;
-        const Vec4 p = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f + when.ahead * speed;
+        const Vec4 centre = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f;
+        const Vec4 p = ahead(body, centre, speed, vertex_count_ + t, when.ahead);
         refresh_centre(body, p, speed, t, when, settings);
         list_centre(p, speed, vertex_count_ + t, when.until_next);
     }

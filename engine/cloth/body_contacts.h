@@ -91,6 +91,8 @@ class BodyContacts {
         float normal[4][kLanes], velocity[4][kLanes];
     };
 
+    [[nodiscard]] Vec4 ahead(const MovingBody& body, const Vec4& p, const Vec4& v,
+                             std::size_t sample, float seconds) const noexcept;
     void refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v, std::uint32_t vertex,
                         const Refresh& when, const ContactSettings& settings) noexcept;
     void refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v, std::size_t triangle,
@@ -98,7 +100,7 @@ class BodyContacts {
     void look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
                      const ContactSettings& settings, float period, SurfacePoint& own) noexcept;
     void place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
-                      const SurfacePoint& own, const ContactSettings& settings,
+                      const SurfacePoint& nearest, const ContactSettings& settings,
                       float period) noexcept;
     void list_vertex(const Vec4& p, const Vec4& v, std::uint32_t vertex, float until_next) noexcept;
     void list_centre(const Vec4& p, const Vec4& v, std::size_t sample, float until_next) noexcept;

@@ -13,10 +13,11 @@ namespace {
 constexpr std::array<std::uint8_t, kBodyJoints> kParent{0,  0,  1,  2, 3,  4,  3,  6, 7,  8,  3,
                                                         10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
 
+// hips, spine, chest, upper chest, neck, both shoulders
+constexpr JointMask kTrunk = 0b0000000000010001011111u;
+
 /// Joints whose surface runs on from a joint's without a limb between: a walk gets there.
 constexpr std::array<JointMask, kBodyJoints> connected() {
-    // hips, spine, chest, upper chest, neck, both shoulders
-    constexpr JointMask kTrunk = 0b0000000000010001011111u;
     std::array<JointMask, kBodyJoints> next{};
     for (std::size_t j = 0; j < kBodyJoints; ++j) {
         next[j] |= (1u << j) | (1u << kParent[j]);
@@ -33,6 +34,10 @@ constexpr std::array<JointMask, kBodyJoints> kConnected = connected();
 
 JointMask connected_parts(std::uint8_t joint) {
     return kConnected[joint];
+}
+
+bool same_part(std::uint8_t a, std::uint8_t b) {
+    return a == b || ((kTrunk >> a) & (kTrunk >> b) & 1u) != 0;
 }
 
 JointMask covered_parts(const std::array<std::uint16_t, 4>& joints,

@@ -13,6 +13,8 @@ namespace toile::cloth {
 
 /// Joints whose surface runs on from a joint's without a limb between: a walk gets there.
 [[nodiscard]] JointMask connected_parts(std::uint8_t joint);
+/// Do both joints move one stiff part: the same one, or the trunk?
+[[nodiscard]] bool same_part(std::uint8_t a, std::uint8_t b);
 /// Joints that move a vertex noticeably, and those next to them.
 [[nodiscard]] JointMask covered_parts(const std::array<std::uint16_t, 4>& joints,
                                       const std::array<float, 4>& weights);
