@@ -240,7 +240,7 @@ void BodyContacts::carry(const MovingBody& body, const Vec4& p, std::size_t samp
 void BodyContacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v,
                                   std::uint32_t vertex, const Refresh& when,
                                   const ContactSettings& settings) noexcept {
-    constexpr std::uint32_t kLook = 4; // turns of a lazy sample
+    constexpr std::uint32_t kLook = 2; // turns of a lazy sample
     const bool turn = !when.last && vertex % when.phases == when.phase;
     Plane& plane = own_plane_[vertex];
     plane.normal.w() += plane.velocity.w() * when.since_last;

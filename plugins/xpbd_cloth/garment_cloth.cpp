@@ -16,6 +16,8 @@ constexpr std::uint32_t kDampEvery = 4;
 constexpr float kCentreEdge = 0.015f;      // m, shorter edges need no contact at triangle centres
 constexpr std::uint32_t kCentresEvery = 4; ///< between its corners cloth hardly sags into the body
 
+constexpr double kMostSubsteps = 2200.0; // 1/s; fine cloth holds its strain with fewer a wave
+
 constexpr float kHard = std::numeric_limits<float>::infinity(); // N/m
 
 Vec4 to_vec4(const Vec3f& p) {
@@ -167,7 +169,8 @@ GarmentCloth::GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest
 double GarmentCloth::substep_rate() const noexcept {
     return settings_.substep_rate > 0.0
                ? settings_.substep_rate
-               : std::clamp(settings_.wave_speed / static_cast<double>(mean_edge_), 480.0, 6000.0);
+               : std::clamp(settings_.wave_speed / static_cast<double>(mean_edge_), 480.0,
+                            kMostSubsteps);
 }
 
 void GarmentCloth::begin_step(std::span<const Vec3f> targets, float substep) noexcept {
