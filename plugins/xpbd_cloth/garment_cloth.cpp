@@ -245,10 +245,14 @@ void GarmentCloth::move(const Substep& now) noexcept {
 void GarmentCloth::predict(const Substep& now) noexcept {
     const Vec4 fall(0.0f, static_cast<float>(-settings_.gravity) * now.length, 0.0f, 0.0f);
     const float keep = now.length / (1.0f + static_cast<float>(settings_.air_drag) * now.length);
+    // A garment that was bound to a body it does not fit would leap as it is let go: it finds its
+    // shape first, and gathers no other speed than that of a fall.
+    const Vec4 fallen = static_cast<float>(now.index) * fall;
     const float per_second = 1.0f / now.length;
     for (std::size_t i = 0; i < start_.size(); ++i) {
         Vec4 x = rows_.x[i];
-        const Vec4 v = velocities_known_ ? rows_.v[i] : velocity(x, rows_.q[i], per_second);
+        Vec4 v = velocities_known_ ? rows_.v[i] : velocity(x, rows_.q[i], per_second);
+        v = now.settles ? fallen : v;
         rows_.q[i] = x;
         x += keep * (v + fall);
         x.w() = inverse_mass_[i];

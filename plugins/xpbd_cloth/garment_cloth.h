@@ -32,6 +32,7 @@ struct Substep {
     std::uint32_t index; ///< in the step
     bool last;           ///< of the step
     bool last_of_interval;
+    bool settles;   ///< the step begins anew: cloth finds its shape, but gathers no speed
     float length;   ///< s
     float fraction; ///< of the step that is over at its end
     float share;    ///< of the step that it is
