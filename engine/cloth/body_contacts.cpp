@@ -9,50 +9,8 @@
 namespace toile::cloth {
 namespace {
 
-/// Parent of each joint in the order of abi/body.h; the hips are their own.
-constexpr std::array<std::uint8_t, kBodyJoints> kParent{0,  0,  1,  2, 3,  4,  3,  6, 7,  8,  3,
-                                                        10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
-
-/// Joints whose surface runs on from a joint's without a limb between: a walk gets there.
-constexpr std::array<JointMask, kBodyJoints> connected() {
-    // hips, spine, chest, upper chest, neck, both shoulders
-    constexpr JointMask kTrunk = 0b0000000000010001011111u;
-    std::array<JointMask, kBodyJoints> next{};
-    for (std::size_t j = 0; j < kBodyJoints; ++j) {
-        next[j] |= (1u << j) | (1u << kParent[j]);
-        next[kParent[j]] |= 1u << j;
-        if (((kTrunk >> j) & 1u) != 0) {
-            next[j] |= kTrunk;
-        }
-    }
-    return next;
-}
-constexpr std::array<JointMask, kBodyJoints> kConnected = connected();
-
-/// Joints that move a vertex noticeably, and those next to them.
-JointMask covered_parts(const std::array<std::uint16_t, 4>& joints,
-                        const std::array<float, 4>& weights) {
-    constexpr float kNoticeable = 0.05f;
-    JointMask moved = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-        if (weights[k] > kNoticeable) {
-            moved |= 1u << joints[k];
-        }
-    }
-    JointMask mask = moved;
-    for (std::size_t j = 0; j < kBodyJoints; ++j) {
-        if ((moved >> j) & 1u) {
-            mask |= 1u << kParent[j];
-        }
-        if ((moved >> kParent[j]) & 1u) {
-            mask |= 1u << j;
-        }
-    }
-    return mask;
-}
-
 constexpr float kNearSkin = 0.025f; ///< m, where the place on the body is kept up to date
-constexpr float kTouching = 0.012f; ///< m, where a plane may push before the next refresh
+constexpr float kTouching = 0.03f;  ///< m, where a plane may push before the next refresh
 
 /// No plane yet, or beside the end of what the sample covers.
 bool is_nowhere(const Vec4& normal) {
@@ -67,39 +25,7 @@ inline bool is_near(const Vec4& normal, const Vec4& velocity, const Vec4& p, con
     return height - std::max(0.0f, closing) * time < distance;
 }
 
-Vec4 direction(const Vec4& normal) {
-    return {normal.x(), normal.y(), normal.z(), 0.0f};
-}
-
-float signed_distance(const MovingBody& body, const Vec4& p, const SurfacePoint& at) {
-    return (p - at.point).dot(body.normal_at(at));
-}
-
-/// Does the other place push the cloth away from its own? A hand that got beneath a skirt must not
-/// carry it off; one over it presses it to the thigh. Cloth far from its own place says nothing.
-bool lifts(const MovingBody& body, const SurfacePoint& own, const SurfacePoint& other) {
-    constexpr float kAway = 0.3f; // cosine
-    constexpr float kWorn = 0.2f; // m
-    return own.squared < kWorn * kWorn && body.normal_at(own).dot(body.normal_at(other)) > kAway;
-}
-
 } // namespace
-
-void check_skin(std::span<const std::array<std::uint16_t, 4>> joints,
-                std::span<const std::array<float, 4>> weights, std::size_t vertex_count) {
-    if (joints.size() != vertex_count || weights.size() != vertex_count) {
-        throw Error("garment: " + std::to_string(joints.size()) + " joint rows and " +
-                    std::to_string(weights.size()) + " weight rows for " +
-                    std::to_string(vertex_count) + " vertices");
-    }
-    for (std::size_t v = 0; v < vertex_count; ++v) {
-        for (std::size_t k = 0; k < 4; ++k) {
-            if (!(std::abs(weights[v][k]) <= 1.5f) || joints[v][k] >= kBodyJoints) {
-                throw Error("garment: vertex " + std::to_string(v) + " has a bad joint weight");
-            }
-        }
-    }
-}
 
 const BodyContacts::Plane BodyContacts::kNowhere{Vec4(0.0f, 0.0f, 0.0f, -1e6f), Vec4::Zero()};
 
@@ -125,6 +51,7 @@ BodyContacts::BodyContacts(std::span<const Triangle> triangles, std::size_t vert
     other_plane_.assign(samples, kNowhere);
     own_place_.assign(samples, {1.0f, 0.0f, 0.0f});
     drift_.assign(samples, 0.0f);
+    squeezed_.assign(samples, 0);
     own_vertices_.reserve(vertex_count / kLanes + 1);
     for (std::vector<ActivePlane>* list : {&other_vertices_, &own_centres_, &other_centres_}) {
         list->reserve(samples);
@@ -165,6 +92,7 @@ void BodyContacts::reset() noexcept {
     std::copy(anchor_.begin(), anchor_.end(), own_triangle_.begin());
     std::fill(other_triangle_.begin(), other_triangle_.end(), kNone);
     std::fill(own_plane_.begin(), own_plane_.end(), kNowhere);
+    std::fill(squeezed_.begin(), squeezed_.end(), std::uint8_t{0});
 }
 
 JointMask BodyContacts::mask_for(std::size_t sample, const MovingBody& body,
@@ -196,8 +124,9 @@ void BodyContacts::look_around(const MovingBody& body, const Vec4& p, std::size_
     constexpr float kOutside = -0.002f; // m, a new place is first met from outside
     const float own_distance = signed_distance(body, p, own);
     // Close to its own place, a walk has found the nearest of what is connected to it.
-    const JointMask skipped =
-        own_distance < kNearSkin ? mask_[sample] & kConnected[body.joint_of(own.triangle)] : 0u;
+    const JointMask skipped = own_distance < kNearSkin
+                                  ? mask_[sample] & connected_parts(body.joint_of(own.triangle))
+                                  : 0u;
     SurfacePoint other;
     for (std::size_t joint = 0; joint < kBodyJoints; ++joint) {
         if (((skipped >> joint) & 1u) != 0) {
@@ -216,8 +145,9 @@ void BodyContacts::look_around(const MovingBody& body, const Vec4& p, std::size_
             own = found;
         } else if (found.squared < other.squared &&
                    (found.point - own.point).squaredNorm() > kApart * kApart &&
-                   signed_distance(body, p, found) > kOutside &&
-                   (covers || !lifts(body, own, found))) {
+                   (covers
+                        ? signed_distance(body, p, found) > kOutside || faces(body, own, found)
+                        : signed_distance(body, p, found) > kOutside && !lifts(body, own, found))) {
             other = found;
         }
     }
@@ -233,33 +163,49 @@ void BodyContacts::look_around(const MovingBody& body, const Vec4& p, std::size_
 }
 
 void BodyContacts::place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
-                                const SurfacePoint& own, const ContactSettings& settings,
+                                const SurfacePoint& nearest, const ContactSettings& settings,
                                 float period) noexcept {
+    SurfacePoint own = nearest;
+    SurfacePoint other;
+    if (other_triangle_[sample] != kNone) {
+        other =
+            body.walk(p, other_triangle_[sample], mask_for(sample, body, other_triangle_[sample]));
+        // A sleeve stays with its own arm where that runs into another part.
+        const std::uint8_t home = body.joint_of(anchor_[sample]);
+        if (other.triangle != kNone && same_part(body.joint_of(other.triangle), home) &&
+            !same_part(body.joint_of(own.triangle), home) &&
+            signed_distance(body, p, other) < 0.0f) {
+            std::swap(own, other);
+        }
+    }
     own_triangle_[sample] = own.triangle;
     own_place_[sample] = {own.bary[0], own.bary[1], own.bary[2]};
     own_plane_[sample] = plane_at(body, p, own);
     drift_[sample] = 0.0f;
-    if (other_triangle_[sample] == kNone) {
+    squeezed_[sample] = 0;
+    if (other.triangle == kNone) {
+        other_triangle_[sample] = kNone;
         return;
     }
-    const SurfacePoint other =
-        body.walk(p, other_triangle_[sample], mask_for(sample, body, other_triangle_[sample]));
+    const bool covers = ((mask_[sample] >> body.joint_of(other.triangle)) & 1u) != 0;
+    const float height = signed_distance(body, p, other);
     const float forget = 2.0f * settings.reach + body.velocity_at(other).norm() * period;
-    const bool gone = other.squared > forget * forget && signed_distance(body, p, other) > 0.0f;
-    if (gone || other.triangle == own.triangle || other.triangle == kNone ||
-        (((mask_[sample] >> body.joint_of(other.triangle)) & 1u) == 0 && lifts(body, own, other))) {
+    const bool gone = other.squared > forget * forget;
+    const bool far_side = covers && height < -kThinnest;
+    if (gone || far_side || other.triangle == own.triangle ||
+        (!covers && lifts(body, own, other))) {
         other_triangle_[sample] = kNone;
         return;
     }
     other_triangle_[sample] = other.triangle;
-    other_plane_[sample] = plane_at(body, p, other);
-    // No room between both surfaces: the body runs into itself here.
-    const Plane& plane = other_plane_[sample];
-    const Vec4 lifted = own.point + settings.offset * direction(own_plane_[sample].normal);
-    const bool opposed = direction(plane.normal).dot(direction(own_plane_[sample].normal)) < 0.0f;
-    const bool beneath = own.squared < settings.reach * settings.reach;
-    if (opposed && beneath && plane.normal.dot(lifted) - plane.normal.w() < 0.0f) {
-        other_plane_[sample] = kNowhere;
+    other_plane_[sample] = on_rim(body, other, mask_for(sample, body, other.triangle)) &&
+                                   height < kOverRim * std::sqrt(other.squared)
+                               ? kNowhere
+                               : plane_at(body, p, other);
+    if (own.squared < settings.reach * settings.reach) {
+        squeezed_[sample] =
+            share_room(own_plane_[sample], other_plane_[sample], own.point,
+                       sample < vertex_count_ ? settings.offset : settings.centre_offset);
     }
 }
 
@@ -294,7 +240,7 @@ void BodyContacts::carry(const MovingBody& body, const Vec4& p, std::size_t samp
 void BodyContacts::refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v,
                                   std::uint32_t vertex, const Refresh& when,
                                   const ContactSettings& settings) noexcept {
-    constexpr std::uint32_t kLook = 4; // turns of a lazy sample
+    constexpr std::uint32_t kLook = 2; // turns of a lazy sample
     const bool turn = !when.last && vertex % when.phases == when.phase;
     Plane& plane = own_plane_[vertex];
     plane.normal.w() += plane.velocity.w() * when.since_last;
@@ -344,15 +290,20 @@ void BodyContacts::refresh_centre(const MovingBody& body, const Vec4& p, const V
     SurfacePoint own = body.walk(p, own_triangle_[sample], mask_[sample]);
     // What a corner found, the centre learns from it.
     const std::uint32_t heard = own_triangle_[told];
+    std::uint32_t second = other_triangle_[told];
     if (turn && heard != own.triangle && ((mask_[sample] >> body.joint_of(heard)) & 1u) != 0) {
         const SurfacePoint there = body.walk(p, heard, mask_[sample]);
-        own = there.squared < own.squared ? there : own;
+        if (signed_distance(body, p, own) > 0.0f && there.squared < own.squared) {
+            own = there;
+        } else if (second == kNone && faces(body, own, there)) {
+            second = heard;
+        }
     }
     if (own.triangle == kNone) {
         return;
     }
     if (other_triangle_[sample] == kNone) {
-        other_triangle_[sample] = other_triangle_[told];
+        other_triangle_[sample] = second;
     }
     place_sample(body, p, sample, own, settings, when.period);
 }
@@ -395,6 +346,21 @@ void BodyContacts::list_centre(const Vec4& p, const Vec4& v, std::size_t sample,
     }
 }
 
+/// Where a sample will be: it goes on as it went, and near the skin as much faster as that.
+Vec4 BodyContacts::ahead(const MovingBody& body, const Vec4& p, const Vec4& v, std::size_t sample,
+                         float seconds) const noexcept {
+    const Plane& plane = own_plane_[sample];
+    if (seconds == 0.0f || is_nowhere(plane.normal)) {
+        return p + seconds * v;
+    }
+    SurfacePoint at;
+    at.triangle = own_triangle_[sample];
+    std::copy(own_place_[sample].begin(), own_place_[sample].end(), at.bary);
+    const float height = plane.normal.dot(p) - plane.normal.w();
+    const float carried = std::clamp(2.0f - height / kNearSkin, 0.0f, 1.0f);
+    return p + seconds * (v + carried * direction(body.velocity_at(at) - plane.velocity));
+}
+
 void BodyContacts::refresh(const MovingBody& body, std::span<const Vec4> x, std::span<const Vec4> v,
                            const Refresh& when, const ContactSettings& settings) noexcept {
     own_vertices_.clear();
@@ -403,14 +369,15 @@ void BodyContacts::refresh(const MovingBody& body, std::span<const Vec4> x, std:
     own_centres_.clear();
     other_centres_.clear();
     for (std::uint32_t i = 0; i < vertex_count_; ++i) {
-        const Vec4 p = x[i] + when.ahead * v[i];
+        const Vec4 p = ahead(body, x[i], v[i], i, when.ahead);
         refresh_vertex(body, p, v[i], i, when, settings);
         list_vertex(p, v[i], i, when.until_next);
     }
     for (std::size_t t = 0; t < sample_count() - vertex_count_; ++t) {
         const Triangle& corner = triangles_[t];
         const Vec4 speed = (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0f;
-        const Vec4 p = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f + when.ahead * speed;
+        const Vec4 centre = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f;
+        const Vec4 p = ahead(body, centre, speed, vertex_count_ + t, when.ahead);
         refresh_centre(body, p, speed, t, when, settings);
         list_centre(p, speed, vertex_count_ + t, when.until_next);
     }

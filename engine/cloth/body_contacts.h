@@ -2,8 +2,8 @@
 // over, the plane that stands for it between two refreshes, and the push with friction.
 #pragma once
 
+#include "cloth/body_places.h"
 #include "cloth/lanes.h"
-#include "cloth/moving_body.h"
 
 namespace toile::cloth {
 
@@ -35,10 +35,6 @@ struct Particles {
     std::span<Vec4> x, q;
     std::span<const float> w;
 };
-
-/// \throw Error when joint rows do not match the vertices, or one is not sound
-void check_skin(std::span<const std::array<std::uint16_t, 4>> joints,
-                std::span<const std::array<float, 4>> weights, std::size_t vertex_count);
 
 /// Samples are the vertices, then the triangle centres. Each sample follows its *own* place on
 /// the body, found by walking from where it was, over the parts that its joints say it covers: it
@@ -76,14 +72,14 @@ class BodyContacts {
     [[nodiscard]] std::uint32_t own_triangle(std::size_t sample) const noexcept {
         return own_triangle_[sample];
     }
+    /// Does it lie between two parts that leave no room for it?
+    [[nodiscard]] bool is_squeezed(std::size_t sample) const noexcept {
+        return squeezed_[sample] != 0;
+    }
     [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_; }
 
   private:
-    /// Half-space that moves with the skin: n.x - d - un t >= offset.
-    struct Plane {
-        Vec4 normal;   ///< and d
-        Vec4 velocity; ///< and its normal part un
-    };
+    using Plane = SkinPlane;
     static const Plane kNowhere; ///< never touched
     struct ActivePlane {
         std::uint32_t sample;
@@ -95,6 +91,8 @@ class BodyContacts {
         float normal[4][kLanes], velocity[4][kLanes];
     };
 
+    [[nodiscard]] Vec4 ahead(const MovingBody& body, const Vec4& p, const Vec4& v,
+                             std::size_t sample, float seconds) const noexcept;
     void refresh_vertex(const MovingBody& body, const Vec4& p, const Vec4& v, std::uint32_t vertex,
                         const Refresh& when, const ContactSettings& settings) noexcept;
     void refresh_centre(const MovingBody& body, const Vec4& p, const Vec4& v, std::size_t triangle,
@@ -102,7 +100,7 @@ class BodyContacts {
     void look_around(const MovingBody& body, const Vec4& p, std::size_t sample,
                      const ContactSettings& settings, float period, SurfacePoint& own) noexcept;
     void place_sample(const MovingBody& body, const Vec4& p, std::size_t sample,
-                      const SurfacePoint& own, const ContactSettings& settings,
+                      const SurfacePoint& nearest, const ContactSettings& settings,
                       float period) noexcept;
     void list_vertex(const Vec4& p, const Vec4& v, std::uint32_t vertex, float until_next) noexcept;
     void list_centre(const Vec4& p, const Vec4& v, std::size_t sample, float until_next) noexcept;
@@ -131,6 +129,7 @@ class BodyContacts {
     std::vector<Plane> own_plane_, other_plane_;  ///< (samples)
     std::vector<std::array<float, 3>> own_place_; ///< (samples) barycentric
     std::vector<float> drift_; ///< (samples) m, at most slid over the skin since its last walk
+    std::vector<std::uint8_t> squeezed_; ///< (samples) 1: no room between both places
     /// Planes within reach until the next refresh; capacity (samples).
     std::vector<PlaneBlock> own_vertices_;
     std::size_t own_count_ = 0; ///< vertices in these blocks

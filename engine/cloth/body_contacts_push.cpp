@@ -5,14 +5,6 @@
 #include <cmath>
 
 namespace toile::cloth {
-namespace {
-
-Vec4 direction(const Vec4& normal) {
-    return {normal.x(), normal.y(), normal.z(), 0.0f};
-}
-
-} // namespace
-
 void BodyContacts::push_vertex(const Particles& particles, std::uint32_t vertex, const Plane& plane,
                                float since, float substep,
                                const ContactSettings& settings) const noexcept {

@@ -72,6 +72,11 @@ std::size_t add_corners(const MovingBody& body, const BodyContacts& contacts,
     return count;
 }
 
+bool is_squeezed(const BodyContacts& contacts, const Triangle& corner) {
+    return contacts.is_squeezed(corner[0]) || contacts.is_squeezed(corner[1]) ||
+           contacts.is_squeezed(corner[2]);
+}
+
 } // namespace
 
 void SkinCover::find(const MovingBody& body, const BodyContacts& contacts, std::span<const Vec4> x,
@@ -82,8 +87,8 @@ void SkinCover::find(const MovingBody& body, const BodyContacts& contacts, std::
         const Triangle& corner = triangles[t];
         const std::uint32_t under =
             contacts.own_triangle(contacts.has_centres() ? x.size() + t : corner[0]);
-        if (under == kNone) {
-            continue;
+        if (under == kNone || is_squeezed(contacts, corner)) {
+            continue; // the skin under it lies within another part
         }
         const Triangle& below = body.triangles()[under];
         const Vec4 centre = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0f;

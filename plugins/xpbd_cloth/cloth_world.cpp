@@ -141,6 +141,7 @@ float ClothWorld::simulate(double dt_s, std::uint32_t substeps) noexcept {
             const Substep now{s,
                               s + 1 == substeps,
                               s + 1 == end,
+                              frame_ == 1,
                               substep,
                               share * static_cast<float>(s + 1),
                               share,

@@ -16,6 +16,8 @@ constexpr std::uint32_t kDampEvery = 4;
 constexpr float kCentreEdge = 0.015f;      // m, shorter edges need no contact at triangle centres
 constexpr std::uint32_t kCentresEvery = 4; ///< between its corners cloth hardly sags into the body
 
+constexpr double kMostSubsteps = 2200.0; // 1/s; fine cloth holds its strain with fewer a wave
+
 constexpr float kHard = std::numeric_limits<float>::infinity(); // N/m
 
 Vec4 to_vec4(const Vec3f& p) {
@@ -158,7 +160,7 @@ GarmentCloth::GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest
         }
     }
     leashed_.reserve(free_.size());
-    for (std::vector<Vec4>* buffer : {&target_before_, &target_after_}) {
+    for (std::vector<Vec4>* buffer : {&target_before_, &target_after_, &noted_, &mean_velocity_}) {
         buffer->resize(start_.size());
         std::transform(start_.begin(), start_.end(), buffer->begin(), to_vec4);
     }
@@ -167,7 +169,8 @@ GarmentCloth::GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest
 double GarmentCloth::substep_rate() const noexcept {
     return settings_.substep_rate > 0.0
                ? settings_.substep_rate
-               : std::clamp(settings_.wave_speed / static_cast<double>(mean_edge_), 480.0, 6000.0);
+               : std::clamp(settings_.wave_speed / static_cast<double>(mean_edge_), 480.0,
+                            kMostSubsteps);
 }
 
 void GarmentCloth::begin_step(std::span<const Vec3f> targets, float substep) noexcept {
@@ -190,6 +193,8 @@ void GarmentCloth::reset() noexcept {
     std::fill(rows_.v.begin(), rows_.v.end(), Vec4::Zero());
     since_damped_ = 0.0f;
     velocities_known_ = true;
+    std::copy(target_after_.begin(), target_after_.end(), noted_.begin());
+    since_noted_ = 0.0f;
     contacts_.reset();
 }
 
@@ -202,10 +207,22 @@ void GarmentCloth::find_contacts(const MovingBody& body, const Interval& interva
     }
     period_ = interval.length() * static_cast<float>(interval.of);
     const std::size_t count = start_.size();
+    note_motion(interval.length());
     contacts_.refresh(
-        body, rows_.x.first(count), rows_.v.first(count),
+        body, rows_.x.first(count), mean_velocity_,
         {half, since_last, half, period_, interval.index, interval.of, false, interval.frame},
         contact_);
+}
+
+/// The velocity of one substep trembles, and over an interval that adds up to centimetres: what
+/// lies ahead is told from the way that the cloth went since the last look.
+void GarmentCloth::note_motion(float until_next) noexcept {
+    const float per_second = since_noted_ > 0.0f ? 1.0f / since_noted_ : 0.0f;
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+        mean_velocity_[i] = per_second * (rows_.x[i] - noted_[i]);
+        noted_[i] = rows_.x[i];
+    }
+    since_noted_ = until_next;
 }
 
 void GarmentCloth::move(const Substep& now) noexcept {
@@ -228,10 +245,14 @@ void GarmentCloth::move(const Substep& now) noexcept {
 void GarmentCloth::predict(const Substep& now) noexcept {
     const Vec4 fall(0.0f, static_cast<float>(-settings_.gravity) * now.length, 0.0f, 0.0f);
     const float keep = now.length / (1.0f + static_cast<float>(settings_.air_drag) * now.length);
+    // A garment that was bound to a body it does not fit would leap as it is let go: it finds its
+    // shape first, and gathers no other speed than that of a fall.
+    const Vec4 fallen = static_cast<float>(now.index) * fall;
     const float per_second = 1.0f / now.length;
     for (std::size_t i = 0; i < start_.size(); ++i) {
         Vec4 x = rows_.x[i];
-        const Vec4 v = velocities_known_ ? rows_.v[i] : velocity(x, rows_.q[i], per_second);
+        Vec4 v = velocities_known_ ? rows_.v[i] : velocity(x, rows_.q[i], per_second);
+        v = now.settles ? fallen : v;
         rows_.q[i] = x;
         x += keep * (v + fall);
         x.w() = inverse_mass_[i];

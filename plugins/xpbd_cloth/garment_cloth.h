@@ -32,6 +32,7 @@ struct Substep {
     std::uint32_t index; ///< in the step
     bool last;           ///< of the step
     bool last_of_interval;
+    bool settles;   ///< the step begins anew: cloth finds its shape, but gathers no speed
     float length;   ///< s
     float fraction; ///< of the step that is over at its end
     float share;    ///< of the step that it is
@@ -92,6 +93,7 @@ class GarmentCloth {
   private:
     GarmentCloth(const OrderedGarment& ordered, const MovingBody& rest_body,
                  const Settings& settings);
+    void note_motion(float until_next) noexcept;
     void predict(const Substep& now) noexcept;
     /// The constraints find each row's inverse mass in its w; everything else wants 0 there.
     void weigh() noexcept;
@@ -124,10 +126,12 @@ class GarmentCloth {
     cloth::SkinCover cover_;
     Rows rows_;
     std::vector<Vec4> target_before_, target_after_;
-    float period_ = 0.0f;          ///< s, of the frame at hand
-    float since_damped_ = 0.0f;    ///< s
-    bool velocities_known_ = true; ///< are those of the rows' last substep
-    std::uint32_t bend_every_ = 2; ///< substeps
+    std::vector<Vec4> noted_, mean_velocity_; ///< (nv) at the last look at the body, and since then
+    float since_noted_ = 0.0f;                ///< s; 0: not yet
+    float period_ = 0.0f;                     ///< s, of the frame at hand
+    float since_damped_ = 0.0f;               ///< s
+    bool velocities_known_ = true;            ///< are those of the rows' last substep
+    std::uint32_t bend_every_ = 2;            ///< substeps
 };
 
 } // namespace toile::xpbd_cloth

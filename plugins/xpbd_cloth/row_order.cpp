@@ -1,5 +1,7 @@
 #include "xpbd_cloth/row_order.h"
 
+#include "cloth/body_places.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -5,7 +5,7 @@ namespace toile::xpbd_cloth {
 
 struct Settings {
     double substep_rate = 0.0;   ///< 1/s; 0: from the mesh, `wave_speed` over its mean edge
-    double wave_speed = 20.0;    ///< m/s, mesh edges that a pull travels in a second
+    double wave_speed = 17.0;    ///< m/s, mesh edges that a pull travels in a second
     double contact_rate = 60.0;  ///< 1/s, refreshes of the contact planes
     double margin = 0.003;       ///< m, kept free between skin and cloth
     double strain_limit = 0.03;  ///< longest that cloth gets over its material; 0: none

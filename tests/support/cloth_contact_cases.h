@@ -127,6 +127,80 @@ TEST(Contact, AFastArmDoesNotPass) {
     EXPECT_GT(front, 0.1f);
 }
 
+/// Cloth folded over between a trunk and an arm, one flank on each, as a sleeve meets its side
+/// seam.
+struct Armpit {
+    static constexpr float kTrunk = 0.12f, kArm = 0.05f; ///< m, radii
+    std::size_t arm_first = 0;
+    Mesh body, cloth;
+    std::vector<float> held, arm_share; ///< of the cloth's vertices
+
+    explicit Armpit(float gap) {
+        body = capsule({-0.4f, 1.0f, 0.0f}, 0.8f, kTrunk);
+        body.bind_to(2);
+        Mesh arm = capsule({-0.4f, 1.0f, kTrunk + gap + kArm}, 0.8f, kArm);
+        arm.bind_to(7);
+        arm_first = body.positions.size();
+        body.join(arm);
+        cloth = sheet({-0.15f, -0.2f, 0.0f}, {0.3f, 0, 0}, {0, 0.4f, 0}, 20, 26);
+        for (std::size_t v = 0; v < cloth.positions.size(); ++v) {
+            Vec3f& p = cloth.positions[v];
+            const float along = p.y(); // from the fold
+            const float beside = std::clamp(along, -0.4f * gap, 0.4f * gap);
+            p = Vec3f(p.x(), 1.1f - std::abs(along), kTrunk + 0.5f * gap + beside);
+            arm_share.push_back(0.5f + beside / (0.8f * gap));
+            held.push_back(std::abs(along) < 1e-4f ? 1.0f : 0.0f);
+            cloth.joints[v] = {2, 7, 0, 0};
+            cloth.weights[v] = {1.0f - arm_share[v], arm_share[v], 0.0f, 0.0f};
+        }
+    }
+};
+
+float longest_stretch(const Stage& stage) {
+    float most = 0.0f;
+    for (std::size_t t = 0; t < stage.cloth.triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Triangle& corner = stage.cloth.triangles[t];
+            const float rest = (stage.cloth.corner_coords[3 * t + (k + 1) % 3] -
+                                stage.cloth.corner_coords[3 * t + k])
+                                   .norm();
+            const float now =
+                (stage.positions[corner[(k + 1) % 3]] - stage.positions[corner[k]]).norm();
+            most = std::max(most, now / rest - 1.0f);
+        }
+    }
+    return most;
+}
+
+// The arm comes down until it runs 15 mm into the trunk, where no place is left for the cloth: it
+// must neither be torn between the two nor gather speed, and it hangs again when the arm is gone.
+TEST(Contact, ClothBetweenLimbsThatRunIntoEachOtherStaysWhole) {
+    constexpr float kGap = 0.06f;
+    constexpr int kFrames = 20;
+    const Armpit scene(kGap);
+    Stage stage(scene.body, scene.cloth, {}, {}, scene.held);
+    const auto move_to = [&](float closed) {
+        std::vector<Vec3f> body = scene.body.positions;
+        for (std::size_t v = scene.arm_first; v < body.size(); ++v) {
+            body[v].z() -= closed;
+        }
+        for (std::size_t v = 0; v < stage.targets.size(); ++v) {
+            stage.targets[v] = scene.cloth.positions[v] - Vec3f(0, 0, scene.arm_share[v] * closed);
+        }
+        ASSERT_EQ(stage.step_to(body), StepResult::ok);
+        EXPECT_LT(longest_stretch(stage), 0.4f) << "closed by " << closed;
+    };
+    const float whole = kGap + 0.015f;
+    for (int i = 0; i < 3 * kFrames; ++i) {
+        move_to(whole * std::min(1.0f, float(i) / kFrames));
+    }
+    EXPECT_LT(stage.root_mean_square_speed(), 0.2f);
+    for (int i = 0; i < 3 * kFrames; ++i) {
+        move_to(whole * std::max(0.0f, 1.0f - float(i) / kFrames));
+    }
+    EXPECT_LT(longest_stretch(stage), 0.2f);
+}
+
 // A hand between a skirt and the thigh is drawn out upwards: the skirt stays down.
 TEST(Contact, AHandBeneathTheClothDoesNotCarryItOff) {
     const float radius = 0.03f;
