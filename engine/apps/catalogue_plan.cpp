@@ -57,6 +57,17 @@ CatalogueLimits limits_from(JsonObject json) {
     return out;
 }
 
+CatalogueItem look_from(JsonObject& json) {
+    CatalogueItem out;
+    out.garments = json.text("garments");
+    out.body = json.text("body");
+    out.size = json.text_or("size", "auto");
+    out.pose = json.text_or("pose", "rest");
+    out.colourway = json.text_or("colourway", "");
+    json.finish();
+    return out;
+}
+
 void read_picture(JsonObject& json, CataloguePlan& plan) {
     std::string views;
     for (const std::string& view : list(json, "views", {"front", "back"}))
@@ -126,8 +137,13 @@ CataloguePlan load_catalogue_plan(const fs::path& file) {
     plan.file = file;
     (void)json.integer("schema", 1, 1);
     plan.out = file.parent_path() / json.text_or("out", file.stem().string());
-    plan.garments = list(json, "garments", {});
-    plan.bodies = list(json, "bodies", {});
+    if (json.has("looks"))
+        for (JsonObject& look : json.objects("looks"))
+            plan.looks.push_back(look_from(look));
+    if (plan.looks.empty() || json.has("garments") || json.has("bodies")) {
+        plan.garments = list(json, "garments", {});
+        plan.bodies = list(json, "bodies", {});
+    }
     plan.sizes = list(json, "sizes", plan.sizes);
     plan.poses = list(json, "poses", plan.poses);
     plan.colourways = list(json, "colourways", plan.colourways);
@@ -137,35 +153,45 @@ CataloguePlan load_catalogue_plan(const fs::path& file) {
     for (auto* names : {&plan.bodies, &plan.poses})
         for (std::string& name : *names)
             name = beside(file, name);
-    for (std::string& look : plan.garments) {
+    const auto worn = [&](const std::string& garments) {
         std::string resolved;
-        for (const std::string& name : split_names(look, file.string() + ": garments"))
+        for (const std::string& name : split_names(garments, file.string() + ": garments"))
             resolved += (resolved.empty() ? "" : ",") + beside(file, name);
-        look = resolved;
+        return resolved;
+    };
+    for (std::string& garments : plan.garments)
+        garments = worn(garments);
+    for (CatalogueItem& look : plan.looks) {
+        look.garments = worn(look.garments);
+        look.body = beside(file, look.body);
+        look.pose = beside(file, look.pose);
     }
     return plan;
 }
 
 std::vector<CatalogueItem> items_of(const CataloguePlan& plan) {
     const std::size_t count = plan.garments.size() * plan.sizes.size() * plan.bodies.size() *
-                              plan.poses.size() * plan.colourways.size();
+                                  plan.poses.size() * plan.colourways.size() +
+                              plan.looks.size();
     if (count > kMostItems)
         throw Error(plan.file.string() + ": is " + std::to_string(count) + " items; at most " +
                     std::to_string(kMostItems) + " are made of one plan");
     std::vector<CatalogueItem> items;
     items.reserve(count);
-    std::set<std::string> ids;
     for (const std::string& garments : plan.garments)
         for (const std::string& size : plan.sizes)
             for (const std::string& body : plan.bodies)
                 for (const std::string& pose : plan.poses)
-                    for (const std::string& colourway : plan.colourways) {
+                    for (const std::string& colourway : plan.colourways)
                         items.push_back({"", garments, size, body, pose, colourway});
-                        items.back().id = id_of(items.back());
-                        if (!ids.insert(items.back().id).second)
-                            throw Error(plan.file.string() + ": two items would be called " +
-                                        items.back().id + "; give their files different names");
-                    }
+    items.insert(items.end(), plan.looks.begin(), plan.looks.end());
+    std::set<std::string> ids;
+    for (CatalogueItem& item : items) {
+        item.id = id_of(item);
+        if (!ids.insert(item.id).second)
+            throw Error(plan.file.string() + ": two items would be called " + item.id +
+                        "; give their files different names");
+    }
     return items;
 }
 

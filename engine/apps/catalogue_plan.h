@@ -21,6 +21,12 @@ struct CatalogueLimits {
     std::optional<double> strain_rms;         ///< at rest
 };
 
+/// One thing to make; a folder of its name under `out`.
+struct CatalogueItem {
+    std::string id; ///< letters, digits, "._+-"; differs from that of all others
+    std::string garments, size, body, pose, colourway;
+};
+
 struct CataloguePlan {
     std::filesystem::path file;
     std::filesystem::path out;         ///< of the plan, or beside it under its name
@@ -29,22 +35,18 @@ struct CataloguePlan {
     std::vector<std::string> bodies;
     std::vector<std::string> poses{"rest"}; ///< as of tryon --pose
     std::vector<std::string> colourways{""};
+    std::vector<CatalogueItem> looks; ///< one by one, after the combinations; no ids
     std::vector<render::View> views;
     render::RendererOptions picture;
     bool glb = false; ///< the look as a 3D file, too
     CatalogueLimits limits;
 };
 
-/// One thing to make; a folder of its name under `out`.
-struct CatalogueItem {
-    std::string id; ///< letters, digits, "._+-"; differs from that of all others
-    std::string garments, size, body, pose, colourway;
-};
-
 /// Names of files in a plan are looked for beside it. \throw Error, JsonError
 [[nodiscard]] CataloguePlan load_catalogue_plan(const std::filesystem::path& file);
 
-/// All of a plan, the last list fastest. \throw Error when two have one id
+/// All of a plan: garments x sizes x bodies x poses x colourways, the last list fastest, then its
+/// looks. \throw Error when two have one id
 [[nodiscard]] std::vector<CatalogueItem> items_of(const CataloguePlan& plan);
 
 /// Of all that decides about an item: the plan's options, body, garments, pose, seed and the

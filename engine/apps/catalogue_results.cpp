@@ -38,7 +38,11 @@ void count(CatalogueCounts& counts, const Told& told) {
 
 std::vector<Row> rows_of(const CataloguePlan& plan, const std::vector<Told>& all) {
     std::vector<Row> rows;
-    for (const std::string& garments : plan.garments) {
+    std::vector<std::string> looks = plan.garments;
+    for (const CatalogueItem& look : plan.looks)
+        if (std::find(looks.begin(), looks.end(), look.garments) == looks.end())
+            looks.push_back(look.garments);
+    for (const std::string& garments : looks) {
         Row& row = rows.emplace_back();
         row.garments = garments;
         for (const Told& told : all) {

@@ -117,6 +117,20 @@ TEST_F(CatalogueTest, SharesPutTogetherAreTheWhole) {
     EXPECT_EQ(bytes(out_ / "sheet-001.png"), sheet);
 }
 
+TEST_F(CatalogueTest, SingleLooksFollowTheCombinations) {
+    const fs::path p = plan({{"looks",
+                              {{{"garments", "skirt"}, {"body", "mannequin"}, {"size", "M"}},
+                               {{"garments", "skirt"}, {"body", "man"}, {"size", "L"}}}}});
+    const ProgramResult list = make(p, {"--list"});
+    EXPECT_EQ(list.output, "skirt_auto_woman_rest\nskirt_auto_man_rest\n"
+                           "skirt_M_mannequin_rest\nskirt_L_man_rest\n");
+    const json alone = {{"schema", 1}, {"looks", {{{"garments", "skirt"}, {"body", "man"}}}}};
+    EXPECT_THAT(JsonSchema("catalogue.schema.json").faults(alone), IsEmpty());
+    EXPECT_EQ(make(write(alone), {"--list"}).output, "skirt_auto_man_rest\n");
+    EXPECT_THAT(make(write({{"schema", 1}, {"looks", {{{"body", "man"}}}}})).output,
+                HasSubstr("garments"));
+}
+
 TEST_F(CatalogueTest, WhatIsBeyondTheLimitsIsNamed) {
     const ProgramResult result =
         make(plan({{"bodies", {"woman"}}, {"limits", {{"strain_rms", 0.0}}}}));
