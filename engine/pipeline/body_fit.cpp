@@ -40,6 +40,10 @@ void copy_body(const toile_body& body, FittedBody& out) {
     const auto joints = vectors_of(body.rest_joints, "joints");
     if (joints.size() != body::kJointCount) throw Error("the fit gives a wrong number of joints");
     std::copy(joints.begin(), joints.end(), out.skeleton.rest_positions.begin());
+    if (body.part_labels.count == out.rest.size() && body.part_labels.format == TOILE_U8) {
+        const auto* labels = static_cast<const std::uint8_t*>(body.part_labels.data);
+        out.part_labels.assign(labels, labels + body.part_labels.count);
+    }
     const auto* bytes = static_cast<const char*>(body.measurements.data);
     for (std::uint32_t i = 0; i < body.measurements.count && bytes != nullptr; ++i) {
         const auto& m = *reinterpret_cast<const toile_measurement*>(
@@ -49,9 +53,17 @@ void copy_body(const toile_body& body, FittedBody& out) {
     }
 }
 
+bool takes(host::Instance& instance, std::uint32_t input) {
+    auto info = host::sized<toile_body_source_info>();
+    const auto& source = instance.table<toile_body_source>();
+    instance.call("describe", [&](toile_instance* i) { return source.describe(i, &info); });
+    return info.input == input;
+}
+
 } // namespace
 
-BodyFit::BodyFit(host::Registry& registry, host::Services& services, const toile_limits& limits) {
+BodyFit::BodyFit(host::Registry& registry, host::Services& services, const toile_limits& limits,
+                 std::uint32_t input) {
     // Which of the body sources can fit is known to the libraries only; those that read recordings
     // of their own cannot.
     for (const host::Manifest& manifest : registry.manifests(TOILE_BODY_SOURCE)) {
@@ -59,7 +71,7 @@ BodyFit::BodyFit(host::Registry& registry, host::Services& services, const toile
         auto instance = std::make_unique<host::Instance>(
             registry.find(TOILE_BODY_SOURCE, manifest.id), services);
         fit_ = instance->find<toile_body_fit>();
-        if (fit_ == nullptr) continue;
+        if (fit_ == nullptr || !takes(*instance, input)) continue;
         instance_ = std::move(instance);
         break;
     }
@@ -82,11 +94,13 @@ void BodyFit::begin(std::span<const toile_stream> streams, host::Job& job) {
     instants_ = 0;
 }
 
-void BodyFit::feed_scan(const geometry::TriangleMesh& scan, host::Job& job) {
+void BodyFit::feed_scan(const geometry::TriangleMesh& scan, host::Job& job,
+                        std::span<const std::array<std::uint8_t, 4>> colors) {
     begin({}, job);
     auto mesh = host::sized<toile_mesh>();
     mesh.positions = host::view_of(scan.positions);
     mesh.normals = host::view_of(scan.normals);
+    mesh.colors = host::view_of(colors);
     mesh.triangles = host::view_of(scan.triangles);
     mesh.topology_id = 1;
     auto input = host::sized<toile_body_source_input>();
@@ -153,6 +167,7 @@ FittedBody BodyFit::take() {
         surface.normals.resize(surface.positions.size());
         geometry::vertex_normals(surface.positions, surface.triangles, surface.normals);
         out.surfaces.push_back(std::move(surface));
+        out.colors.push_back(taken.colors);
     }
     std::string text(kMostReport, '\0');
     std::uint64_t bytes = text.size();

@@ -85,6 +85,12 @@ class Fitter {
                       const FitOptions& options, const RowLoop& rows, FitResult& result);
     [[nodiscard]] std::optional<double> find_covers(const FitState& state,
                                                     std::vector<Observation>& observations) const;
+    [[nodiscard]] std::vector<Observation>
+    bare_points(const FitState& state, std::span<const Observation> observations) const;
+    void fit_bare(std::span<const Observation> observations, const Scope& scope, FitOptions options,
+                  const RowLoop& rows, std::vector<Observation>& bare, FitResult& result);
+    void add_poked(std::span<const Observation> observations, const FitState& state,
+                   std::vector<Observation>& held) const;
     void retry_arms(std::span<ObservedPoints> observed, const FitOptions& options,
                     const RowLoop& rows, FitResult& best);
     [[nodiscard]] body::Sex likelier_sex(const ShapeVector& shape) const;
