@@ -18,6 +18,7 @@ void add_plugin_commands(CLI::App& app, const GlobalOptions& options);
 void add_record_commands(CLI::App& app, const GlobalOptions& options);
 void add_track_commands(CLI::App& app, const GlobalOptions& options);
 void add_fit_commands(CLI::App& app, const GlobalOptions& options);
+void add_dress_commands(CLI::App& app, const GlobalOptions& options);
 void add_measure_commands(CLI::App& app, const GlobalOptions& options);
 
 /// The subcommands that plugins add (toile.tool/1), in their groups; after all others. A manifest

@@ -129,7 +129,7 @@ void BodyFit::feed_frames(std::span<const SensorFrame> frames) {
     ++instants_;
 }
 
-FittedBody BodyFit::fit(const FitRequest& request, host::Job& job) {
+void BodyFit::run(const FitRequest& request, host::Job& job) {
     auto options = host::sized<toile_body_fit_options>();
     options.dressed = request.dressed ? 1 : 0;
     if (request.sex)
@@ -137,7 +137,46 @@ FittedBody BodyFit::fit(const FitRequest& request, host::Job& job) {
     instance_->call("fit", [&](toile_instance* instance) {
         return fit_->fit(instance, &options, job.handle());
     });
+}
+
+FittedBody BodyFit::fit(const FitRequest& request, host::Job& job) {
+    run(request, job);
     return take();
+}
+
+BodyFit::Surface BodyFit::fit_surface(host::Job& job) {
+    run({}, job);
+    Surface out = take_surface(0);
+    out.report = take_report();
+    return out;
+}
+
+BodyFit::Surface BodyFit::take_surface(std::uint32_t instant) {
+    host::MeshSink sink(kMostVertices, kMostTriangles);
+    instance_->call("surface", [&](toile_instance* instance) {
+        return fit_->surface(instance, instant, sink.handle());
+    });
+    host::SunkMesh taken = sink.take();
+    Surface out;
+    for (const auto& p : taken.positions)
+        out.mesh.positions.emplace_back(p[0], p[1], p[2]);
+    out.mesh.triangles = std::move(taken.triangles);
+    out.mesh.normals.resize(out.mesh.positions.size());
+    geometry::vertex_normals(out.mesh.positions, out.mesh.triangles, out.mesh.normals);
+    out.colors = std::move(taken.colors);
+    return out;
+}
+
+nlohmann::ordered_json BodyFit::take_report() {
+    std::string text(kMostReport, '\0');
+    std::uint64_t bytes = text.size();
+    instance_->call("report", [&](toile_instance* instance) {
+        return fit_->report(instance, text.data(), &bytes);
+    });
+    text.resize(std::min<std::uint64_t>(bytes, text.size()));
+    auto out = nlohmann::ordered_json::parse(text, nullptr, false);
+    if (out.is_discarded()) throw Error(instance_->id() + ": its report is not JSON");
+    return out;
 }
 
 FittedBody BodyFit::take() {
@@ -154,29 +193,9 @@ FittedBody BodyFit::take() {
         throw Error(instance_->id() + ": gave nobody after the fit");
     copy_body(*person.body, out);
     out.pose = local_pose(transforms_of(joints));
-    for (std::uint32_t i = 0; i < instants_; ++i) {
-        host::MeshSink sink(kMostVertices, kMostTriangles);
-        instance_->call("surface", [&](toile_instance* instance) {
-            return fit_->surface(instance, i, sink.handle());
-        });
-        const host::SunkMesh taken = sink.take();
-        geometry::TriangleMesh surface;
-        for (const auto& p : taken.positions)
-            surface.positions.emplace_back(p[0], p[1], p[2]);
-        surface.triangles = taken.triangles;
-        surface.normals.resize(surface.positions.size());
-        geometry::vertex_normals(surface.positions, surface.triangles, surface.normals);
-        out.surfaces.push_back(std::move(surface));
-        out.colors.push_back(taken.colors);
-    }
-    std::string text(kMostReport, '\0');
-    std::uint64_t bytes = text.size();
-    instance_->call("report", [&](toile_instance* instance) {
-        return fit_->report(instance, text.data(), &bytes);
-    });
-    text.resize(std::min<std::uint64_t>(bytes, text.size()));
-    out.report = nlohmann::ordered_json::parse(text, nullptr, false);
-    if (out.report.is_discarded()) throw Error(instance_->id() + ": its report is not JSON");
+    for (std::uint32_t i = 0; i < instants_; ++i)
+        out.surfaces.push_back(take_surface(i).mesh);
+    out.report = take_report();
     return out;
 }
 

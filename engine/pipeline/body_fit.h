@@ -37,8 +37,7 @@ struct FittedBody {
     body::Pose pose;         ///< of the last instant
     std::map<std::string, FittedLength> measurements; ///< by ISO name
     std::vector<geometry::TriangleMesh> surfaces;     ///< of each instant, as it was seen
-    std::vector<std::vector<std::array<std::uint8_t, 4>>> colors; ///< of each, sRGB, or empty
-    std::vector<std::uint8_t> part_labels;                        ///< (nv) TOILE_PART_*, or empty
+    std::vector<std::uint8_t> part_labels;            ///< (nv) TOILE_PART_*, or empty
     nlohmann::ordered_json report;
 };
 
@@ -64,10 +63,22 @@ class BodyFit {
     /// \throw Error with the plugin's reason when this is no body; host::Cancelled [worker]
     [[nodiscard]] FittedBody fit(const FitRequest& request, host::Job& job);
 
+    /// What a plugin made of a scan's surface, also where it found no body in it.
+    struct Surface {
+        geometry::TriangleMesh mesh;
+        std::vector<std::array<std::uint8_t, 4>> colors; ///< (nv) sRGB, or empty
+        nlohmann::ordered_json report;
+    };
+    /// \throw as fit [worker]
+    [[nodiscard]] Surface fit_surface(host::Job& job);
+
   private:
     void begin(std::span<const toile_stream> streams, host::Job& job);
 
+    void run(const FitRequest& request, host::Job& job);
     [[nodiscard]] FittedBody take();
+    [[nodiscard]] Surface take_surface(std::uint32_t instant);
+    [[nodiscard]] nlohmann::ordered_json take_report();
 
     std::unique_ptr<host::Instance> instance_;
     const toile_body_source* source_ = nullptr;
