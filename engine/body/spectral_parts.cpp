@@ -1,12 +1,15 @@
 #include "body/spectral_parts.h"
 
 #include "core/error.h"
+#include "geometry/point_tree.h"
 #include "geometry/spectral.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 
 namespace toile::body {
 namespace {
@@ -89,9 +92,98 @@ void sign_limbs(SpectralParts& out, const Spectrum& s, const geometry::TriangleM
     }
 }
 
+/// The largest piece; rows of `of` that named others name the nearest vertex of it.
+geometry::TriangleMesh main_piece(const geometry::TriangleMesh& mesh,
+                                  std::vector<std::uint32_t>& of) {
+    std::vector<std::uint32_t> parent(mesh.positions.size());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](std::uint32_t i) {
+        while (parent[i] != i)
+            i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    std::vector<std::size_t> sizes(parent.size(), 0);
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t k = 1; k < 3; ++k) {
+            const std::uint32_t a = root(t[0]), b = root(t[k]);
+            parent[std::max(a, b)] = std::min(a, b);
+        }
+    for (const Triangle& t : mesh.triangles)
+        ++sizes[root(t[0])];
+    const auto main = static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) -
+                                                 sizes.begin());
+    geometry::TriangleMesh out;
+    std::vector<std::uint32_t> place(parent.size());
+    for (std::uint32_t v = 0; v < place.size(); ++v) {
+        if (root(v) != main) continue;
+        place[v] = static_cast<std::uint32_t>(out.positions.size());
+        out.positions.push_back(mesh.positions[v]);
+    }
+    const geometry::PointTree tree(out.positions);
+    for (std::uint32_t v = 0; v < place.size(); ++v)
+        if (root(v) != main) place[v] = tree.nearest(mesh.positions[v]).index;
+    for (const Triangle& t : mesh.triangles)
+        if (root(t[0]) == main)
+            out.triangles.push_back({place[t[0]], place[t[1]], place[t[2]]});
+    for (std::uint32_t& v : of)
+        v = place[v];
+    return out;
+}
+
+constexpr std::size_t kLarge = 30'000; // vertices: more are taken together first
+
+
+/// A coarser surface for the eigenvectors alone: vertices of one cell that face alike are one, so
+/// that surfaces which touch stay apart. `of` (nv) gets each vertex's place in it.
+geometry::TriangleMesh coarse(const geometry::TriangleMesh& mesh, std::vector<std::uint32_t>& of) {
+    const double edge = std::sqrt(2.3 * geometry::surface_area(mesh) / (0.6 * kLarge));
+    std::vector<Vec3f> normals(mesh.positions.size());
+    geometry::vertex_normals(mesh.positions, mesh.triangles, normals);
+    std::map<std::array<int, 4>, std::uint32_t> cells;
+    geometry::TriangleMesh out;
+    std::vector<float> counts;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        std::array<int, 4> key{};
+        for (int k = 0; k < 3; ++k)
+            key[static_cast<std::size_t>(k)] =
+                static_cast<int>(std::floor(static_cast<double>(mesh.positions[v][k]) / edge));
+        Eigen::Index side = 0;
+        normals[v].cwiseAbs().maxCoeff(&side);
+        key[3] = 2 * static_cast<int>(side) + (normals[v][side] > 0.0f ? 1 : 0);
+        const auto [at, added] =
+            cells.try_emplace(key, static_cast<std::uint32_t>(out.positions.size()));
+        if (added) {
+            out.positions.emplace_back(Vec3f::Zero());
+            counts.push_back(0.0f);
+        }
+        of.push_back(at->second);
+        out.positions[at->second] += mesh.positions[v];
+        counts[at->second] += 1.0f;
+    }
+    for (std::size_t v = 0; v < counts.size(); ++v)
+        out.positions[v] /= counts[v];
+    for (const Triangle& t : mesh.triangles) {
+        const Triangle c = {of[t[0]], of[t[1]], of[t[2]]};
+        if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) out.triangles.push_back(c);
+    }
+    return main_piece(out, of);
+}
+
 } // namespace
 
 SpectralParts spectral_parts(const geometry::TriangleMesh& mesh) {
+    if (mesh.positions.size() > kLarge) {
+        std::vector<std::uint32_t> of;
+        const SpectralParts few = spectral_parts(coarse(mesh, of));
+        SpectralParts out = few;
+        out.of.clear();
+        out.axes.resize(static_cast<Eigen::Index>(of.size()), 3);
+        for (std::size_t v = 0; v < of.size(); ++v) {
+            out.of.push_back(few.of[of[v]]);
+            out.axes.row(static_cast<Eigen::Index>(v)) = few.axes.row(of[v]);
+        }
+        return out;
+    }
     Spectrum s = geometry::laplace_beltrami(mesh, 3);
     SpectralParts out = canonical_axes(s, mesh);
     sign_limbs(out, s, mesh);

@@ -145,6 +145,15 @@ Vec3f neck_of(const FittedBody& body) {
     return neck + kNeckShare * (joints[TOILE_JOINT_HEAD].translation - neck);
 }
 
+assets::Rgba8 srgb_of(const std::array<float, 3>& light) {
+    assets::Rgba8 out = {200, 200, 200, 255};
+    if (light == std::array<float, 3>{}) return out; // unknown
+    for (std::size_t k = 0; k < 3; ++k)
+        out[k] = static_cast<std::uint8_t>(
+            std::lround(255.0f * imaging::srgb_from_linear(std::clamp(light[k], 0.0f, 1.0f))));
+    return out;
+}
+
 /// The mannequin's skin in the colour of the customer's, lighter and darker as it was.
 void match_skin(const garment::ClothCover& cover, const std::array<float, 3>& wanted,
                 std::vector<assets::Rgba8>& colors) {
@@ -259,6 +268,8 @@ MannequinDressing dress_from_mannequin(host::Registry& registry, host::Services&
     const auto skin = cover_of(out.customer, out.customer_fit);
     if (out.cover.by_color && skin.by_color)
         match_skin(out.cover, skin.skin, dressed_customer.colors);
+    if (out.customer.colors.empty()) // a head without colour takes the mannequin's
+        out.customer.colors.assign(out.customer.mesh.positions.size(), srgb_of(out.cover.skin));
     const Vec3f neck = request.whole_body ? neck_of(out.customer_fit) : neck_of(out.mannequin_fit);
     out.look = transfer_head({&dressed_customer, neck}, {&out.customer, neck_of(out.customer_fit)});
     out.report["garment"] =
