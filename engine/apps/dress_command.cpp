@@ -7,6 +7,7 @@
 #include "core/json.h"
 #include "pipeline/mannequin_dressing.h"
 
+#include <cctype>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DressCommand {
-    fs::path mannequin, customer, out, report, picture;
+    fs::path mannequin, customer, out, report, picture, garment;
     std::string fit = "abdomen";
     std::uint32_t strips = 0;
 };
@@ -54,6 +55,18 @@ void print(const nlohmann::ordered_json& report) {
     std::cout << report.at("seconds").at("all").get<double>() << " s\n";
 }
 
+/// The folder's name, as an id may be written.
+std::string package_id(const fs::path& folder) {
+    std::string out;
+    for (const char c : (folder.has_filename() ? folder : folder.parent_path()).filename().string())
+        out += std::isalnum(static_cast<unsigned char>(c)) != 0
+                   ? static_cast<char>(std::tolower(static_cast<unsigned char>(c)))
+                   : '-';
+    if (out.empty() || std::isalpha(static_cast<unsigned char>(out.front())) == 0)
+        out = "garment-" + out;
+    return out.substr(0, 60);
+}
+
 void dress(const DressCommand& command, const GlobalOptions& global) {
     const std::string kind = command.out.extension().string();
     if (kind != ".glb" && kind != ".ply" && kind != ".obj")
@@ -70,9 +83,13 @@ void dress(const DressCommand& command, const GlobalOptions& global) {
     pipeline::MannequinDressingRequest request;
     request.whole_body = command.fit == "body";
     request.strips = command.strips;
-    const pipeline::MannequinDressing dressed = pipeline::dress_from_mannequin(
-        registry, services, limits_of(global, services, kScannedPerson), mannequin, customer,
-        request, job);
+    const toile_limits limits = limits_of(global, services, kScannedPerson);
+    pipeline::MannequinDressing dressed = pipeline::dress_from_mannequin(
+        registry, services, limits, mannequin, customer, request, job);
+    if (!command.garment.empty())
+        garment::write_package(pipeline::take_off_garment(registry, services, limits, dressed,
+                                                          package_id(command.garment), job),
+                               command.garment);
     assets::save_scene(assets::scene_of(dressed.look, "dressed"), command.out);
     if (!command.report.empty()) save_report(dressed.report, command.report);
     if (!command.picture.empty()) save_dressed_picture(dressed, command.picture);
@@ -105,6 +122,10 @@ void add_dress_commands(CLI::App& app, const GlobalOptions& global) {
         ->required();
     command->add_option("--report", options->report, "Gets what was found and how long it took")
         ->type_name("FILE");
+    command
+        ->add_option("--garment-out", options->garment,
+                     "Gets the garment by itself, as a package for tryon and mirror")
+        ->type_name("DIR");
     command
         ->add_option("--picture", options->picture,
                      "Draws mannequin, customer and result side by side")

@@ -110,8 +110,8 @@ geometry::TriangleMesh main_piece(const geometry::TriangleMesh& mesh,
         }
     for (const Triangle& t : mesh.triangles)
         ++sizes[root(t[0])];
-    const auto main = static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) -
-                                                 sizes.begin());
+    const auto main =
+        static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
     geometry::TriangleMesh out;
     std::vector<std::uint32_t> place(parent.size());
     for (std::uint32_t v = 0; v < place.size(); ++v) {
@@ -123,15 +123,13 @@ geometry::TriangleMesh main_piece(const geometry::TriangleMesh& mesh,
     for (std::uint32_t v = 0; v < place.size(); ++v)
         if (root(v) != main) place[v] = tree.nearest(mesh.positions[v]).index;
     for (const Triangle& t : mesh.triangles)
-        if (root(t[0]) == main)
-            out.triangles.push_back({place[t[0]], place[t[1]], place[t[2]]});
+        if (root(t[0]) == main) out.triangles.push_back({place[t[0]], place[t[1]], place[t[2]]});
     for (std::uint32_t& v : of)
         v = place[v];
     return out;
 }
 
 constexpr std::size_t kLarge = 30'000; // vertices: more are taken together first
-
 
 /// A coarser surface for the eigenvectors alone: vertices of one cell that face alike are one, so
 /// that surfaces which touch stay apart. `of` (nv) gets each vertex's place in it.

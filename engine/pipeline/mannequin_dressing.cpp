@@ -1,11 +1,10 @@
 #include "pipeline/mannequin_dressing.h"
 
-#include "abi/resizer.h"
 #include "core/error.h"
 #include "geometry/nearest_surface.h"
-#include "host/views.h"
 #include "imaging/srgb.h"
 #include "pipeline/head_transfer.h"
+#include "pipeline/resizing.h"
 
 #include <algorithm>
 #include <chrono>
@@ -31,14 +30,6 @@ struct Found {
     FittedBody body;
     double clean_s = 0.0, fit_s = 0.0;
 };
-
-toile_mesh mesh_view(const geometry::TriangleMesh& mesh, std::uint64_t topology) {
-    auto out = host::sized<toile_mesh>();
-    out.positions = host::view_of(mesh.positions);
-    out.triangles = host::view_of(mesh.triangles);
-    out.topology_id = topology;
-    return out;
-}
 
 void check_upright(const FittedBody& body) {
     const auto& up = body.report.at("up");
@@ -86,32 +77,6 @@ class ScanReader {
     std::exception_ptr failure_;
 };
 
-class Resizing {
-  public:
-    Resizing(host::Registry& registry, host::Services& services, const toile_limits& limits)
-        : instance_(registry.find(TOILE_RESIZER), services) {
-        instance_.activate(limits);
-    }
-
-    /// The subject's vertices after the change.
-    std::vector<Vec3f> run(toile_resize_request request, const geometry::TriangleMesh& subject,
-                           host::Job& job) {
-        const toile_mesh mesh = mesh_view(subject, 1);
-        request.subject = &mesh;
-        std::vector<Vec3f> out(subject.positions.size(), Vec3f::Zero());
-        instance_.call("resize", [&](toile_instance* i) {
-            return instance_.table<toile_resizer>().resize(i, &request, host::view_mut(out),
-                                                           job.handle());
-        });
-        for (const Vec3f& p : out)
-            if (!p.allFinite()) throw Error(instance_.id() + ": gives positions not finite");
-        return out;
-    }
-
-  private:
-    host::Instance instance_;
-};
-
 /// The mannequin's body with the customer's proportions, on the mannequin's topology.
 geometry::TriangleMesh changed_body(const MannequinDressing& of,
                                     const MannequinDressingRequest& request, Resizing& resizing,
@@ -124,11 +89,7 @@ geometry::TriangleMesh changed_body(const MannequinDressing& of,
             throw Error("the two bodies were fitted with different models");
         out.positions = after.positions;
     } else {
-        const toile_mesh target = mesh_view(of.customer.mesh, 2);
-        auto wanted = host::sized<toile_resize_request>();
-        wanted.strips = request.strips;
-        wanted.target = &target;
-        out.positions = resizing.run(wanted, before, job);
+        out.positions = resizing.to_target(before, of.customer.mesh, request.strips, job);
     }
     geometry::vertex_normals(out.positions, out.triangles, out.normals);
     return out;
@@ -250,13 +211,9 @@ MannequinDressing dress_from_mannequin(host::Registry& registry, host::Services&
 
     const auto resize_start = Clock::now();
     out.changed_body = changed_body(out, request, resizing, job);
-    const toile_mesh before = mesh_view(out.mannequin_fit.surfaces.front(), 3);
-    const toile_mesh after = mesh_view(out.changed_body, 3);
-    auto wanted = host::sized<toile_resize_request>();
-    wanted.body_before = &before;
-    wanted.body_after = &after;
     assets::ColoredMesh dressed_customer = out.mannequin;
-    dressed_customer.mesh.positions = resizing.run(wanted, out.mannequin.mesh, job);
+    dressed_customer.mesh.positions = resizing.with_body(
+        out.mannequin.mesh, out.mannequin_fit.surfaces.front(), out.changed_body, job);
     const double resize_s = seconds_since(resize_start);
 
     const auto head_start = Clock::now();

@@ -4,6 +4,7 @@
 #include "assets/colored_mesh.h"
 #include "body/body_model.h"
 #include "garment/cloth_cover.h"
+#include "garment/package.h"
 #include "pipeline/body_fit.h"
 
 namespace toile::pipeline {
@@ -32,5 +33,12 @@ struct MannequinDressing {
 dress_from_mannequin(host::Registry& registry, host::Services& services, const toile_limits& limits,
                      const assets::ColoredMesh& mannequin, const assets::ColoredMesh& customer,
                      const MannequinDressingRequest& request, host::Job& job);
+
+/// The garment by itself, fit to be written: carried to the avatar whose girths are nearest to the
+/// mannequin's, of those with the fitted body's topology. Sets `report`'s "package".
+/// \throw Error when there is hardly any cloth, or no such avatar
+[[nodiscard]] garment::GarmentPackage
+take_off_garment(host::Registry& registry, host::Services& services, const toile_limits& limits,
+                 MannequinDressing& dressed, const std::string& id, host::Job& job);
 
 } // namespace toile::pipeline
