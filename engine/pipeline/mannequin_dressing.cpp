@@ -212,7 +212,7 @@ MannequinDressing dress_from_mannequin(host::Registry& registry, host::Services&
     const auto resize_start = Clock::now();
     out.changed_body = changed_body(out, request, resizing, job);
     assets::ColoredMesh dressed_customer = out.mannequin;
-    dressed_customer.mesh.positions = resizing.with_body(
+    dressed_customer.mesh.positions = out.moved = resizing.with_body(
         out.mannequin.mesh, out.mannequin_fit.surfaces.front(), out.changed_body, job);
     const double resize_s = seconds_since(resize_start);
 

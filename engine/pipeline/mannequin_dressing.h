@@ -22,6 +22,7 @@ struct MannequinDressing {
     FittedBody mannequin_fit; ///< the body beneath the garment
     FittedBody customer_fit;
     geometry::TriangleMesh changed_body; ///< the mannequin's body after it was resized
+    std::vector<Vec3f> moved;            ///< (nv of `mannequin`) its points after the change
     garment::ClothCover cover;           ///< (nv of `mannequin`)
     nlohmann::ordered_json report;
 };

@@ -23,10 +23,18 @@ class Profile {
     Profile(const Trunk& subject, const Trunk& target, std::size_t count)
         : low_(subject.low()), high_(subject.high()) {
         const auto from = subject.strips(count), to = target.strips(count);
-        for (std::size_t i = 0; i < count; ++i)
-            changes_.push_back({to[i].width() / from[i].width(), to[i].depth() / from[i].depth(),
-                                0.5f * (from[i].left + from[i].right),
-                                0.5f * (from[i].back + from[i].front)});
+        for (std::size_t i = 0; i < count; ++i) {
+            Change change{to[i].width() / from[i].width(), to[i].depth() / from[i].depth(),
+                          0.5f * (from[i].left + from[i].right),
+                          0.5f * (from[i].back + from[i].front)};
+            // The rectangle gives the ellipse's shape, a tape its size: a section is no ellipse.
+            const double girth = subject.scaled_girth(from[i].height, change.width, change.depth);
+            const auto size =
+                static_cast<float>(target.girth(to[i].height) / std::max(girth, 0.01));
+            change.width *= size;
+            change.depth *= size;
+            changes_.push_back(change);
+        }
         const float step = (high_ - low_) / static_cast<float>(count);
         reach_ = std::max(0.6f * step, kLeastReach);
     }

@@ -89,6 +89,13 @@ std::vector<Strip> Trunk::strips(std::size_t count) const {
     return out;
 }
 
+double Trunk::scaled_girth(float height, float width, float depth) const {
+    geometry::Loop tape = cutter_.tape(height);
+    for (Vec3f& p : tape.points)
+        p = Vec3f(width * p.x(), p.y(), depth * p.z());
+    return tape.length(); // convex still
+}
+
 double Trunk::girth(float height) const {
     return cutter_.girth(height);
 }

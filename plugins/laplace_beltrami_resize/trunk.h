@@ -32,6 +32,8 @@ class Trunk {
     [[nodiscard]] float high() const { return high_; } ///< metres
     /// Cuts at the middle heights of `count` equal strips, from below.
     [[nodiscard]] std::vector<Strip> strips(std::size_t count) const;
+    /// A tape around the trunk there, scaled by `width` along x and `depth` along z: its length.
+    [[nodiscard]] double scaled_girth(float height, float width, float depth) const;
     /// Of a tape around the trunk there; 0 where nothing is cut.
     [[nodiscard]] double girth(float height) const;
 
