@@ -12,7 +12,7 @@ namespace toile::laplace_beltrami_resize {
 namespace {
 
 constexpr double kLeastSmoothing = 0.002; // metres over which moves are smoothed on the skin
-constexpr double kSmoothingByGap = 0.5;   // and per metre of distance from it
+constexpr double kSmoothingByGap = 1.0;   // and per metre of distance from it
 constexpr int kRoomRounds = 2;
 constexpr float kMostRoomStep = 0.02f; // metres a round
 
@@ -64,7 +64,7 @@ class GapSmoother {
             A.coeffRef(v, v) += weights_[v];
         }
         matrix_ = std::move(A);
-        solver_.setTolerance(1e-5);
+        solver_.setTolerance(1e-4);
         solver_.setMaxIterations(400);
         solver_.compute(matrix_);
     }
@@ -124,24 +124,22 @@ std::vector<Vec3f> follow_body(const geometry::TriangleMesh& subject,
         out[v] = subject.positions[v] + moves[v];
     // What smoothing took from the room to the body is given back.
     const geometry::NearestSurface changed(after, before.triangles);
-    Eigen::VectorXd lack(static_cast<Eigen::Index>(count));
-    std::vector<Vec3f> normals(count);
     for (int round = 0; round < kRoomRounds; ++round) {
+        std::vector<Vec3f> pushes(count);
         rows(count, kGrain, [&](std::uint32_t first, std::uint32_t last) {
             for (std::uint32_t v = first; v < last; ++v) {
                 const auto near = changed.nearest(out[v]);
-                lack[static_cast<Eigen::Index>(v)] = static_cast<double>(
-                    std::clamp(gaps[v] - near.signed_distance, -kMostRoomStep, kMostRoomStep));
-                const Vec3f away = out[v] - near.point;
-                normals[v] =
-                    near.distance > 0.003f
-                        ? Vec3f((near.signed_distance < 0.0f ? -away : away) / near.distance)
-                        : near.normal;
+                const float lack =
+                    std::clamp(gaps[v] - near.signed_distance, -kMostRoomStep, kMostRoomStep);
+                const Vec3f away = near.signed_distance < 0.0f ? Vec3f(near.point - out[v])
+                                                               : Vec3f(out[v] - near.point);
+                pushes[v] =
+                    lack * (near.distance > 0.003f ? Vec3f(away / near.distance) : near.normal);
             }
         });
-        const Eigen::VectorXd push = smoother.smooth(lack);
+        smoother.smooth(pushes); // as vectors: between two legs they point apart
         for (std::uint32_t v = 0; v < count; ++v)
-            out[v] += static_cast<float>(push[static_cast<Eigen::Index>(v)]) * normals[v];
+            out[v] += pushes[v];
     }
     return out;
 }

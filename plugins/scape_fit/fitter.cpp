@@ -35,6 +35,7 @@ namespace {
 constexpr float kPoke = 0.002f;    // metres: a body so far out of its cloth is drawn in
 constexpr float kMostPoke = 0.06f; // farther it is another sheet of it
 constexpr int kPokeRounds = 2;
+constexpr float kBeneath = -0.7f;   // up of a normal that looks down
 constexpr double kLeastBare = 0.12; // share of skin that says where a dressed body stands
 constexpr std::size_t kStartPoints = 400;
 constexpr std::size_t kStarts = 6;
@@ -424,6 +425,9 @@ std::vector<Observation> Fitter::bare_points(const FitState& state,
         std::size_t kept = 0;
         for (std::size_t i = 0; i < one.points.size(); ++i) {
             if (one.covers[i] != Cover::skin) continue;
+            // What closes a hem is no skin, although it has the colour of the legs beside it.
+            const Vec3f up = state.poses.at(one.instant).rotations[0] * Vec3f::UnitY();
+            if (!one.normals.empty() && one.normals[i].dot(up) < kBeneath) continue;
             one.points[kept] = one.points[i];
             if (!one.normals.empty()) one.normals[kept] = one.normals[i];
             one.areas[kept] = one.areas[i];

@@ -71,6 +71,15 @@ Spread ease_errors(const pipeline::MannequinDressing& dressed,
     return Spread(std::move(out));
 }
 
+/// Of the body beneath the garment from the true one.
+Spread fit_errors(const pipeline::MannequinDressing& dressed, const geometry::TriangleMesh& truth) {
+    const geometry::NearestSurface surface(truth.positions, truth.triangles);
+    std::vector<double> out;
+    for (const Vec3f& p : dressed.mannequin_fit.surfaces.front().positions)
+        out.push_back(static_cast<double>(surface.nearest(p).distance));
+    return Spread(std::move(out));
+}
+
 Vec3f cross_of(const std::vector<Vec3f>& p, const Triangle& t) {
     return (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
 }
@@ -125,6 +134,7 @@ void evaluate(host::Registry& registry, host::Services& services, const toile_li
         girth_errors(dressed, whole).print("abdomen's girths");
         ease_errors(dressed, truth, whole ? dressed.customer.mesh : dressed.changed_body)
             .print("room of the garment (true bodies)");
+        fit_errors(dressed, truth).print("body found beneath the garment");
         print_folds(dressed);
         if (true_look.empty()) continue;
         const auto look = assets::load_colored_mesh(true_look);
