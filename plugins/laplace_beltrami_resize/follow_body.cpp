@@ -4,8 +4,8 @@
 #include "geometry/laplacian.h"
 #include "geometry/nearest_surface.h"
 
-#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SVD>
+#include <Eigen/SparseCholesky>
 #include <cmath>
 
 namespace toile::laplace_beltrami_resize {
@@ -63,30 +63,31 @@ class GapSmoother {
                 std::max(weights_[v], 1e-10) / (kLeastSmoothing * kLeastSmoothing + gap * gap);
             A.coeffRef(v, v) += weights_[v];
         }
-        matrix_ = std::move(A);
-        solver_.setTolerance(1e-4);
-        solver_.setMaxIterations(400);
-        solver_.compute(matrix_);
+        solver_.compute(A);
+        if (solver_.info() != Eigen::Success)
+            throw Error("moves cannot be smoothed over the surface: it has parts without area");
     }
 
-    [[nodiscard]] Eigen::VectorXd smooth(const Eigen::VectorXd& given) const {
-        return solver_.solveWithGuess(weights_.cwiseProduct(given), given);
-    }
-    void smooth(std::vector<Vec3f>& moves) const {
-        for (int k = 0; k < 3; ++k) {
-            Eigen::VectorXd one(static_cast<Eigen::Index>(moves.size()));
-            for (std::size_t v = 0; v < moves.size(); ++v)
-                one[static_cast<Eigen::Index>(v)] = static_cast<double>(moves[v][k]);
-            one = smooth(one);
-            for (std::size_t v = 0; v < moves.size(); ++v)
-                moves[v][k] = static_cast<float>(one[static_cast<Eigen::Index>(v)]);
-        }
+    /// Each of the three columns by itself.
+    void smooth(std::vector<Vec3f>& moves, const RowLoop& rows) const {
+        rows(3, 1, [&](std::uint32_t first, std::uint32_t last) {
+            for (std::uint32_t k = first; k < last; ++k)
+                smooth_column(moves, static_cast<Eigen::Index>(k));
+        });
     }
 
   private:
+    void smooth_column(std::vector<Vec3f>& moves, Eigen::Index k) const {
+        Eigen::VectorXd one(static_cast<Eigen::Index>(moves.size()));
+        for (std::size_t v = 0; v < moves.size(); ++v)
+            one[static_cast<Eigen::Index>(v)] = static_cast<double>(moves[v][k]);
+        one = solver_.solve(weights_.cwiseProduct(one)).eval();
+        for (std::size_t v = 0; v < moves.size(); ++v)
+            moves[v][k] = static_cast<float>(one[static_cast<Eigen::Index>(v)]);
+    }
+
     Eigen::VectorXd weights_;
-    Eigen::SparseMatrix<double> matrix_;
-    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver_;
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
 };
 
 constexpr std::uint32_t kGrain = 2048;
@@ -118,7 +119,7 @@ std::vector<Vec3f> follow_body(const geometry::TriangleMesh& subject,
         }
     });
     const GapSmoother smoother(subject, gaps);
-    smoother.smooth(moves);
+    smoother.smooth(moves, rows);
     std::vector<Vec3f> out(count);
     for (std::uint32_t v = 0; v < count; ++v)
         out[v] = subject.positions[v] + moves[v];
@@ -137,7 +138,7 @@ std::vector<Vec3f> follow_body(const geometry::TriangleMesh& subject,
                     lack * (near.distance > 0.003f ? Vec3f(away / near.distance) : near.normal);
             }
         });
-        smoother.smooth(pushes); // as vectors: between two legs they point apart
+        smoother.smooth(pushes, rows); // as vectors: between two legs they point apart
         for (std::uint32_t v = 0; v < count; ++v)
             out[v] += pushes[v];
     }

@@ -35,7 +35,8 @@ namespace {
 constexpr float kPoke = 0.002f;    // metres: a body so far out of its cloth is drawn in
 constexpr float kMostPoke = 0.06f; // farther it is another sheet of it
 constexpr int kPokeRounds = 2;
-constexpr float kBeneath = -0.7f;   // up of a normal that looks down
+constexpr float kBeneath = -0.7f; // up of a normal that looks down
+constexpr std::size_t kFaceStarts = 2;
 constexpr double kLeastBare = 0.12; // share of skin that says where a dressed body stands
 constexpr std::size_t kStartPoints = 400;
 constexpr std::size_t kStarts = 6;
@@ -279,7 +280,7 @@ FitResult Fitter::start_instant(std::span<const Observation> seen, const FitResu
     loose.camera = {}, loose.cameras.clear();
     FitResult best;
     best.rms_m = std::numeric_limits<double>::max();
-    for (const Start& start : library_.find(few, options.ups, kStarts, rows)) {
+    for (const Start& start : library_.find(few, options.ups, options.starts, rows)) {
         FitResult tried;
         tried.state.shape.coefficients =
             before.state.poses.empty() ? start.shape : before.state.shape.coefficients;
@@ -292,7 +293,7 @@ FitResult Fitter::start_instant(std::span<const Observation> seen, const FitResu
         refine(observed, second, loose, rows, tried);
         if (tried.rms_m < best.rms_m) best = std::move(tried);
     }
-    retry_arms(observed, loose, rows, best);
+    if (options.starts >= kStarts) retry_arms(observed, loose, rows, best);
     return best;
 }
 
@@ -515,8 +516,12 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
     FitOptions options = wanted;
     // Cloth is no shape of a body: the prior holds against it.
     if (wanted.dressed) options.shape_weight = std::max(wanted.shape_weight, kDressedStartWeight);
-    FitResult result = start(observations, scope, options, rows);
-    if (options.dressed && !scope.depth) {
+    FitResult result;
+    const bool scan_of_clothes = options.dressed && !scope.depth && !observations[0].hues.empty();
+    if (scan_of_clothes) {
+        FitOptions face = options; // only where the face is: it tells the colour of skin
+        face.starts = kFaceStarts;
+        result = start(observations, scope, face, rows);
         // Skirts and sleeves of a scan draw a body far off: what is bare is fitted alone.
         auto bare = bare_points(result.state, observations);
         if (!bare.empty()) {
@@ -524,6 +529,7 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
             return result;
         }
     }
+    result = start(observations, scope, options, rows);
     result.sex = options.sex.value_or(likelier_sex(result.state.shape.coefficients));
     find_together(observations, scope, options, rows, result);
     if (options.rough) return result;
