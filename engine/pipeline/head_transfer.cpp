@@ -37,6 +37,11 @@ Vec3f middle_of(const std::vector<Vec3f>& positions, const std::vector<std::uint
     return sum / std::max(length, 1e-9f);
 }
 
+void close(const std::vector<std::uint32_t>& ring, Piece& out) {
+    for (std::size_t i = 2; i < ring.size(); ++i)
+        out.cut.mesh.triangles.push_back({ring[0], ring[i - 1], ring[i]});
+}
+
 /// What lies above (sign 1) or below (-1) the level through the neck; away from it, all or none.
 Piece piece_of(const Necked& of, float sign, float height, const char* whose) {
     const auto& mesh = of.surface->mesh;
@@ -61,11 +66,14 @@ Piece piece_of(const Necked& of, float sign, float height, const char* whose) {
         const Vec3f middle = middle_of(out.cut.mesh.positions, ring);
         const bool level = std::abs(middle.y() - height) < 0.01f;
         const bool near = Vec2f(middle.x() - of.neck.x(), middle.z() - of.neck.z()).norm() < 0.1f;
-        if (!level || !near || ring.size() < 8) continue;
-        out.rim = ring;
-        out.middle = middle;
-        return out;
+        if (out.rim.empty() && level && near && ring.size() >= 8) {
+            out.rim = ring;
+            out.middle = middle;
+        } else if (level) {
+            close(ring, out); // a throat within the neck, a fold of a collar
+        }
     }
+    if (!out.rim.empty()) return out;
     throw Error(std::string("no neck was found to cut ") + whose + "'s scan at");
 }
 

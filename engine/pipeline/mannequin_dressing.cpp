@@ -15,8 +15,9 @@
 namespace toile::pipeline {
 namespace {
 
-constexpr float kNeckShare = 0.5f; // of the way from the neck's joint to the head's
-constexpr double kUpright = 0.85;  // cosine between the body's up and +Y
+constexpr float kNeckShare =
+    0.15f; // of the way from the joint of the neck to that of the head: below the chin
+constexpr double kUpright = 0.85; // cosine between the body's up and +Y
 
 using Clock = std::chrono::steady_clock;
 
