@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <unordered_map>
 
 namespace toile::geometry {
@@ -86,6 +87,47 @@ void drop_unused(CleanMesh& out) {
     for (Triangle& t : out.mesh.triangles)
         for (std::uint32_t& v : t)
             v = place[v];
+}
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+Edge edge_of(std::uint32_t a, std::uint32_t b) {
+    return {std::min(a, b), std::max(a, b)};
+}
+
+/// Ear by ear, always the shortest next diagonal that is no edge yet; where none is left, around a
+/// new point in the middle.
+void close_hole(std::vector<std::uint32_t> loop, std::set<Edge>& edges, CleanMesh& out) {
+    auto& mesh = out.mesh;
+    while (loop.size() > 3) {
+        const std::size_t n = loop.size();
+        std::size_t best = n;
+        float shortest = std::numeric_limits<float>::max();
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint32_t a = loop[(i + n - 1) % n], b = loop[(i + 1) % n];
+            const float d = (mesh.positions[a] - mesh.positions[b]).squaredNorm();
+            if (d >= shortest || edges.contains(edge_of(a, b))) continue;
+            shortest = d;
+            best = i;
+        }
+        if (best == n) break;
+        const std::uint32_t a = loop[(best + n - 1) % n], b = loop[(best + 1) % n];
+        edges.insert(edge_of(a, b));
+        mesh.triangles.push_back({a, loop[best], b});
+        loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(best));
+    }
+    if (loop.size() == 3) {
+        mesh.triangles.push_back({loop[0], loop[1], loop[2]});
+        return;
+    }
+    Vec3f middle = Vec3f::Zero();
+    for (const std::uint32_t v : loop)
+        middle += mesh.positions[v] / static_cast<float>(loop.size());
+    const auto centre = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(middle);
+    out.source.push_back(out.source[loop[0]]);
+    for (std::size_t i = 0; i < loop.size(); ++i)
+        mesh.triangles.push_back({loop[i], loop[(i + 1) % loop.size()], centre});
 }
 
 } // namespace
@@ -278,6 +320,7 @@ void split_pinched_vertices(CleanMesh& out) {
 void fill_holes(std::size_t largest, CleanMesh& out) {
     auto& mesh = out.mesh;
     const auto sides = sorted_sides(mesh.triangles);
+    std::set<Edge> edges; // of the borders' surroundings
     // Runs along the border, against the triangles there.
     std::vector<std::uint32_t> next(mesh.positions.size(), kNone);
     each_edge(sides, [&](std::size_t first, std::size_t last) {
@@ -286,6 +329,8 @@ void fill_holes(std::size_t largest, CleanMesh& out) {
         const auto [from, to] = s.forward != 0 ? std::pair(s.b, s.a) : std::pair(s.a, s.b);
         next[from] = to;
     });
+    for (const Side& side : sides)
+        if (next[side.a] != kNone && next[side.b] != kNone) edges.emplace(side.a, side.b);
     for (std::uint32_t start = 0; start < next.size(); ++start) {
         if (next[start] == kNone) continue;
         std::vector<std::uint32_t> loop;
@@ -300,21 +345,7 @@ void fill_holes(std::size_t largest, CleanMesh& out) {
             continue;
         }
         ++out.report.filled_holes;
-        // Ear by ear, always the shortest next diagonal.
-        while (loop.size() > 3) {
-            const std::size_t n = loop.size();
-            std::size_t best = 0;
-            float shortest = std::numeric_limits<float>::max();
-            for (std::size_t i = 0; i < n; ++i) {
-                const float d =
-                    (mesh.positions[loop[(i + n - 1) % n]] - mesh.positions[loop[(i + 1) % n]])
-                        .squaredNorm();
-                if (d < shortest) shortest = d, best = i;
-            }
-            mesh.triangles.push_back({loop[(best + n - 1) % n], loop[best], loop[(best + 1) % n]});
-            loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(best));
-        }
-        mesh.triangles.push_back({loop[0], loop[1], loop[2]});
+        close_hole(std::move(loop), edges, out);
     }
 }
 
