@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 #include <iostream>
+#include <map>
 
 namespace toile::body {
 namespace {
@@ -80,6 +81,30 @@ TEST(SpectralParts, TheAbdomenIsTheSameOnTwentyBodies) {
         EXPECT_GT(worst, kLeastOverlap) << "seed " << seed;
     }
     std::cout << "abdomen, 20 bodies: overlap at least " << worst << "\n";
+}
+
+TEST(SpectralParts, ALargeScanHasTheSameParts) {
+    auto fine = posed(mean_shape(), {});
+    const std::size_t count = fine.positions.size();
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    std::vector<Triangle> quarters;
+    for (const Triangle& t : fine.triangles) {
+        Triangle m{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [a, b] = std::minmax(t[k], t[(k + 1) % 3]);
+            const auto [at, added] =
+                middles.try_emplace({a, b}, static_cast<std::uint32_t>(fine.positions.size()));
+            if (added) fine.positions.emplace_back(0.5f * (fine.positions[a] + fine.positions[b]));
+            m[k] = at->second;
+        }
+        quarters.insert(quarters.end(),
+                        {{t[0], m[0], m[2]}, {m[0], t[1], m[1]}, {m[2], m[1], t[2]}, m});
+    }
+    fine.triangles = std::move(quarters);
+    ASSERT_GT(fine.positions.size(), 40'000u); // enough to be taken together first
+    SpectralParts parts = spectral_parts(fine);
+    parts.of.resize(count);
+    EXPECT_GT(overlap(parts.of, rest_parts().of, SpectralPart::abdomen, areas()), 0.95);
 }
 
 TEST(SpectralParts, PartsAreWhereTheyAreCalled) {
