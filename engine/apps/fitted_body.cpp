@@ -1,7 +1,7 @@
 #include "apps/fitted_body.h"
 
 #include "apps/plugin_limits.h"
-#include "assets/files.h"
+#include "assets/colored_mesh.h"
 #include "core/error.h"
 #include "core/log.h"
 
@@ -14,35 +14,6 @@ namespace {
 
 constexpr std::uint32_t kDressedFrames = 5; // P5 4: the fewest that tell cloth from skin
 constexpr std::uint32_t kMostFrames = 20;
-
-/// All meshes of a file where their nodes stand.
-geometry::TriangleMesh load_scan(const std::filesystem::path& file) {
-    const assets::Scene scene = assets::load_scene(file);
-    geometry::TriangleMesh out;
-    std::vector<Eigen::Affine3f> places;
-    for (const assets::Node& node : scene.nodes) {
-        Eigen::Affine3f place =
-            Eigen::Translation3f(node.translation) * node.rotation * Eigen::Scaling(node.scale);
-        if (node.parent != assets::kNone)
-            place = places[static_cast<std::size_t>(node.parent)] * place;
-        places.push_back(place);
-        if (node.mesh == assets::kNone) continue;
-        for (const auto& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-            const auto base = static_cast<std::uint32_t>(out.positions.size());
-            for (const Vec3f& p : primitive.positions)
-                out.positions.push_back(place * p);
-            for (const Triangle& t : primitive.triangles)
-                out.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-            if (out.normals.size() == base &&
-                primitive.normals.size() == primitive.positions.size())
-                for (const Vec3f& n : primitive.normals)
-                    out.normals.push_back((place.linear() * n).normalized());
-        }
-    }
-    if (out.normals.size() != out.positions.size()) out.normals.clear();
-    if (out.positions.empty()) throw FileError(file.string(), "holds no surface and no points");
-    return out;
-}
 
 /// All frames that a fit shall use, each of all cameras.
 struct Pictures {
@@ -139,7 +110,8 @@ pipeline::FittedBody fit_body(const FitInput& input, const GlobalOptions& global
     const toile_limits limits = limits_of(global, services, kScannedPerson);
     pipeline::BodyFit fit(registry, services, limits);
     if (!input.scan.empty()) {
-        fit.feed_scan(load_scan(input.scan), job);
+        const assets::ColoredMesh scan = assets::load_colored_mesh(input.scan);
+        fit.feed_scan(scan.mesh, job, scan.colors);
     } else {
         Pictures pictures;
         const std::uint32_t wanted =

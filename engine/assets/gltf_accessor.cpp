@@ -92,6 +92,10 @@ std::size_t AccessorReader::count(int accessor, const std::string& what) const {
     return at(accessor, what).count;
 }
 
+int AccessorReader::components(int accessor, const std::string& what) const {
+    return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(at(accessor, what).type));
+}
+
 AccessorReader::Elements AccessorReader::elements(int view, std::size_t offset, std::size_t count,
                                                   int component_type, int components,
                                                   const std::string& what) const {

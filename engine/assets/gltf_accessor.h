@@ -17,6 +17,9 @@ class AccessorReader {
     /// Elements of an accessor. \throw FileError when there is none of that index
     [[nodiscard]] std::size_t count(int accessor, const std::string& what) const;
 
+    /// Numbers an element has: 1 to 4 for scalars and vectors.
+    [[nodiscard]] int components(int accessor, const std::string& what) const;
+
     /// (count * components) numbers, normalised integers as fractions, sparse parts applied.
     /// \throw FileError when it is not of that many components, lies outside its buffer, or holds
     /// numbers that are not finite

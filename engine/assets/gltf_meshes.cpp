@@ -1,6 +1,10 @@
 #include "assets/gltf_parts.h"
 #include "assets/skins.h"
 #include "core/log.h"
+#include "imaging/srgb.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace toile::assets {
 namespace {
@@ -37,6 +41,7 @@ class PrimitiveReader {
             for (std::size_t i = 0; i < vertices; ++i)
                 primitive.texcoords.emplace_back(uv[2 * i], uv[2 * i + 1]);
         }
+        read_colors(from, primitive);
         read_influences(from, primitive);
         if (from.material != kNone &&
             (from.material < 0 ||
@@ -81,6 +86,26 @@ class PrimitiveReader {
         if (values.size() != vertices * static_cast<std::size_t>(components))
             throw budget_.error(what + " does not have one element per vertex");
         return values;
+    }
+
+    // glTF's vertex colours are linear light.
+    void read_colors(const tinygltf::Primitive& from, Primitive& primitive) {
+        const auto it = from.attributes.find("COLOR_0");
+        if (it == from.attributes.end()) return;
+        const int width = accessors_.components(it->second, where_ + ", COLOR_0") == 3 ? 3 : 4;
+        const std::size_t vertices = primitive.positions.size();
+        const std::vector<float> light = floats(from, "COLOR_0", width, vertices);
+        primitive.colors.assign(vertices, {255, 255, 255, 255});
+        const auto byte = [](float v) {
+            return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(v, 0.0f, 1.0f)));
+        };
+        for (std::size_t i = 0; i < vertices; ++i) {
+            const float* row = light.data() + i * static_cast<std::size_t>(width);
+            for (std::size_t k = 0; k < 3; ++k)
+                primitive.colors[i][k] =
+                    byte(imaging::srgb_from_linear(std::clamp(row[k], 0.0f, 1.0f)));
+            if (width == 4) primitive.colors[i][3] = byte(row[3]);
+        }
     }
 
     void read_triangles(const tinygltf::Primitive& from, Primitive& primitive) {

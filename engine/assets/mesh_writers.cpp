@@ -107,11 +107,12 @@ std::vector<std::uint8_t> write_ply(const Scene& scene) {
     const std::vector<Placed> all = place(scene);
     std::size_t vertices = 0;
     std::size_t faces = 0;
-    bool normals = true;
+    bool normals = true, colors = true;
     for (const Placed& placed : all) {
         vertices += placed.positions.size();
         faces += placed.primitive->triangles.size();
         normals = normals && placed.normals.size() == placed.positions.size();
+        colors = colors && placed.primitive->colors.size() == placed.positions.size();
     }
     std::string header = "ply\nformat binary_little_endian 1.0\ncomment Toile; metres\n";
     header += "element vertex " + std::to_string(vertices) + "\n";
@@ -120,6 +121,9 @@ std::vector<std::uint8_t> write_ply(const Scene& scene) {
     if (normals)
         for (const char* name : {"nx", "ny", "nz"})
             header += std::string("property float ") + name + "\n";
+    if (colors)
+        for (const char* name : {"red", "green", "blue"})
+            header += std::string("property uchar ") + name + "\n";
     header += "element face " + std::to_string(faces) + "\n";
     header += "property list uchar int vertex_indices\nend_header\n";
 
@@ -130,6 +134,8 @@ std::vector<std::uint8_t> write_ply(const Scene& scene) {
                 append_bytes(bytes, placed.positions[i][k]);
             for (int k = 0; normals && k < 3; ++k)
                 append_bytes(bytes, placed.normals[i][k]);
+            for (std::size_t k = 0; colors && k < 3; ++k)
+                append_bytes(bytes, placed.primitive->colors[i][k]);
         }
     std::uint32_t base = 0;
     for (const Placed& placed : all) {

@@ -216,10 +216,11 @@ class PlyReader {
 
     void read_vertices(const Element& element) {
         static const std::map<std::string, int> slots = {
-            {"x", 0}, {"y", 1}, {"z", 2}, {"nx", 3}, {"ny", 4},        {"nz", 5},
-            {"s", 6}, {"t", 7}, {"u", 6}, {"v", 7},  {"texture_u", 6}, {"texture_v", 7}};
+            {"x", 0},         {"y", 1},         {"z", 2},   {"nx", 3},    {"ny", 4},
+            {"nz", 5},        {"s", 6},         {"t", 7},   {"u", 6},     {"v", 7},
+            {"texture_u", 6}, {"texture_v", 7}, {"red", 8}, {"green", 9}, {"blue", 10}};
         std::vector<int> slot;
-        std::array<bool, 8> present{};
+        std::array<bool, 11> present{};
         for (const Property& property : element.properties) {
             const auto it = slots.find(property.name);
             slot.push_back(it == slots.end() || property.count != Type::invalid ? -1 : it->second);
@@ -229,10 +230,17 @@ class PlyReader {
             throw budget_.error("its vertices have no x, y and z");
         const bool normals = present[3] && present[4] && present[5];
         const bool texcoords = present[6] && present[7];
+        const bool colors = present[8] && present[9] && present[10];
+        float full = 255.0f; // what a colour's property counts up to
+        for (const Property& property : element.properties) {
+            if (property.name != "red") continue;
+            if (property.type == Type::f32 || property.type == Type::f64) full = 1.0f;
+            if (property.type == Type::u16) full = 65535.0f;
+        }
         budget_.add_mesh(element.count, 0, "vertices");
         std::vector<double> ignored;
         for (std::size_t i = 0; i < element.count; ++i) {
-            std::array<float, 8> v{};
+            std::array<float, 11> v{};
             for (std::size_t p = 0; p < slot.size(); ++p) {
                 values(element.properties[p], ignored);
                 if (slot[p] >= 0)
@@ -244,6 +252,12 @@ class PlyReader {
             primitive_.positions.emplace_back(v[0], v[1], v[2]);
             if (normals) primitive_.normals.emplace_back(v[3], v[4], v[5]);
             if (texcoords) primitive_.texcoords.emplace_back(v[6], 1.0f - v[7]);
+            if (!colors) continue;
+            auto& color = primitive_.colors.emplace_back();
+            for (std::size_t k = 0; k < 3; ++k)
+                color[k] = static_cast<std::uint8_t>(
+                    std::lround(255.0f * std::clamp(v[8 + k] / full, 0.0f, 1.0f)));
+            color[3] = 255;
         }
     }
 

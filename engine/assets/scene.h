@@ -42,9 +42,10 @@ struct MorphTarget {
 
 /// One drawable: vertices as in the file (cut along seams).
 struct Primitive {
-    std::vector<Vec3f> positions; ///< (nv)
-    std::vector<Vec3f> normals;   ///< (nv), or empty
-    std::vector<Vec2f> texcoords; ///< (nv), or empty; origin at the top left
+    std::vector<Vec3f> positions;                    ///< (nv)
+    std::vector<Vec3f> normals;                      ///< (nv), or empty
+    std::vector<Vec2f> texcoords;                    ///< (nv), or empty; origin at the top left
+    std::vector<std::array<std::uint8_t, 4>> colors; ///< (nv) sRGB, multiply the material; or empty
     std::vector<Triangle> triangles;
     std::vector<std::array<std::uint16_t, 4>> joints; ///< (nv) into the skin's joints, or empty
     std::vector<std::array<float, 4>> weights;        ///< (nv)

@@ -68,8 +68,9 @@ double Bench::distance(const std::vector<Float3>& a, const std::vector<Float3>& 
 std::span<const ContractCase> contract_cases() {
     static const std::vector<ContractCase> all = [] {
         std::vector<ContractCase> out;
-        for (const auto part : {life_cases(), skinning_cases(), garment_cases(), cloth_cases(),
-                                body_source_cases(), sensor_cases(), tool_cases(), draft_cases()})
+        for (const auto part :
+             {life_cases(), skinning_cases(), garment_cases(), cloth_cases(), body_source_cases(),
+              sensor_cases(), tool_cases(), resizer_cases(), draft_cases()})
             out.insert(out.end(), part.begin(), part.end());
         return out;
     }();

@@ -121,6 +121,7 @@ class Longer {
 [[nodiscard]] std::span<const ContractCase> body_source_cases();
 [[nodiscard]] std::span<const ContractCase> sensor_cases();
 [[nodiscard]] std::span<const ContractCase> tool_cases();
+[[nodiscard]] std::span<const ContractCase> resizer_cases();
 [[nodiscard]] std::span<const ContractCase> draft_cases();
 
 } // namespace toile::host

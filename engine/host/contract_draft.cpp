@@ -15,17 +15,8 @@ void scanner_refuses(const PluginPtr& plugin) {
                 [&](auto* i) { return table.finish(i, nullptr, nullptr); });
 }
 
-void resizer_refuses(const PluginPtr& plugin) {
-    Bench bench(plugin);
-    bench.activate();
-    bench.fails("resize", "without a request", [&](auto* i) {
-        return bench.table<toile_resizer>().resize(i, nullptr, {}, nullptr);
-    });
-}
-
 constexpr ContractCase kCases[] = {
     {TOILE_SCANNER, "scanner: wrong calls are refused with a text", &scanner_refuses},
-    {TOILE_RESIZER, "resizer: wrong calls are refused with a text", &resizer_refuses},
 };
 
 } // namespace

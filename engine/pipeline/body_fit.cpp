@@ -40,6 +40,10 @@ void copy_body(const toile_body& body, FittedBody& out) {
     const auto joints = vectors_of(body.rest_joints, "joints");
     if (joints.size() != body::kJointCount) throw Error("the fit gives a wrong number of joints");
     std::copy(joints.begin(), joints.end(), out.skeleton.rest_positions.begin());
+    if (body.part_labels.count == out.rest.size() && body.part_labels.format == TOILE_U8) {
+        const auto* labels = static_cast<const std::uint8_t*>(body.part_labels.data);
+        out.part_labels.assign(labels, labels + body.part_labels.count);
+    }
     const auto* bytes = static_cast<const char*>(body.measurements.data);
     for (std::uint32_t i = 0; i < body.measurements.count && bytes != nullptr; ++i) {
         const auto& m = *reinterpret_cast<const toile_measurement*>(
@@ -49,9 +53,17 @@ void copy_body(const toile_body& body, FittedBody& out) {
     }
 }
 
+bool takes(host::Instance& instance, std::uint32_t input) {
+    auto info = host::sized<toile_body_source_info>();
+    const auto& source = instance.table<toile_body_source>();
+    instance.call("describe", [&](toile_instance* i) { return source.describe(i, &info); });
+    return info.input == input;
+}
+
 } // namespace
 
-BodyFit::BodyFit(host::Registry& registry, host::Services& services, const toile_limits& limits) {
+BodyFit::BodyFit(host::Registry& registry, host::Services& services, const toile_limits& limits,
+                 std::uint32_t input) {
     // Which of the body sources can fit is known to the libraries only; those that read recordings
     // of their own cannot.
     for (const host::Manifest& manifest : registry.manifests(TOILE_BODY_SOURCE)) {
@@ -59,7 +71,7 @@ BodyFit::BodyFit(host::Registry& registry, host::Services& services, const toile
         auto instance = std::make_unique<host::Instance>(
             registry.find(TOILE_BODY_SOURCE, manifest.id), services);
         fit_ = instance->find<toile_body_fit>();
-        if (fit_ == nullptr) continue;
+        if (fit_ == nullptr || !takes(*instance, input)) continue;
         instance_ = std::move(instance);
         break;
     }
@@ -82,11 +94,13 @@ void BodyFit::begin(std::span<const toile_stream> streams, host::Job& job) {
     instants_ = 0;
 }
 
-void BodyFit::feed_scan(const geometry::TriangleMesh& scan, host::Job& job) {
+void BodyFit::feed_scan(const geometry::TriangleMesh& scan, host::Job& job,
+                        std::span<const std::array<std::uint8_t, 4>> colors) {
     begin({}, job);
     auto mesh = host::sized<toile_mesh>();
     mesh.positions = host::view_of(scan.positions);
     mesh.normals = host::view_of(scan.normals);
+    mesh.colors = host::view_of(colors);
     mesh.triangles = host::view_of(scan.triangles);
     mesh.topology_id = 1;
     auto input = host::sized<toile_body_source_input>();
@@ -115,7 +129,7 @@ void BodyFit::feed_frames(std::span<const SensorFrame> frames) {
     ++instants_;
 }
 
-FittedBody BodyFit::fit(const FitRequest& request, host::Job& job) {
+void BodyFit::run(const FitRequest& request, host::Job& job) {
     auto options = host::sized<toile_body_fit_options>();
     options.dressed = request.dressed ? 1 : 0;
     if (request.sex)
@@ -123,7 +137,46 @@ FittedBody BodyFit::fit(const FitRequest& request, host::Job& job) {
     instance_->call("fit", [&](toile_instance* instance) {
         return fit_->fit(instance, &options, job.handle());
     });
+}
+
+FittedBody BodyFit::fit(const FitRequest& request, host::Job& job) {
+    run(request, job);
     return take();
+}
+
+BodyFit::Surface BodyFit::fit_surface(host::Job& job) {
+    run({}, job);
+    Surface out = take_surface(0);
+    out.report = take_report();
+    return out;
+}
+
+BodyFit::Surface BodyFit::take_surface(std::uint32_t instant) {
+    host::MeshSink sink(kMostVertices, kMostTriangles);
+    instance_->call("surface", [&](toile_instance* instance) {
+        return fit_->surface(instance, instant, sink.handle());
+    });
+    host::SunkMesh taken = sink.take();
+    Surface out;
+    for (const auto& p : taken.positions)
+        out.mesh.positions.emplace_back(p[0], p[1], p[2]);
+    out.mesh.triangles = std::move(taken.triangles);
+    out.mesh.normals.resize(out.mesh.positions.size());
+    geometry::vertex_normals(out.mesh.positions, out.mesh.triangles, out.mesh.normals);
+    out.colors = std::move(taken.colors);
+    return out;
+}
+
+nlohmann::ordered_json BodyFit::take_report() {
+    std::string text(kMostReport, '\0');
+    std::uint64_t bytes = text.size();
+    instance_->call("report", [&](toile_instance* instance) {
+        return fit_->report(instance, text.data(), &bytes);
+    });
+    text.resize(std::min<std::uint64_t>(bytes, text.size()));
+    auto out = nlohmann::ordered_json::parse(text, nullptr, false);
+    if (out.is_discarded()) throw Error(instance_->id() + ": its report is not JSON");
+    return out;
 }
 
 FittedBody BodyFit::take() {
@@ -140,28 +193,9 @@ FittedBody BodyFit::take() {
         throw Error(instance_->id() + ": gave nobody after the fit");
     copy_body(*person.body, out);
     out.pose = local_pose(transforms_of(joints));
-    for (std::uint32_t i = 0; i < instants_; ++i) {
-        host::MeshSink sink(kMostVertices, kMostTriangles);
-        instance_->call("surface", [&](toile_instance* instance) {
-            return fit_->surface(instance, i, sink.handle());
-        });
-        const host::SunkMesh taken = sink.take();
-        geometry::TriangleMesh surface;
-        for (const auto& p : taken.positions)
-            surface.positions.emplace_back(p[0], p[1], p[2]);
-        surface.triangles = taken.triangles;
-        surface.normals.resize(surface.positions.size());
-        geometry::vertex_normals(surface.positions, surface.triangles, surface.normals);
-        out.surfaces.push_back(std::move(surface));
-    }
-    std::string text(kMostReport, '\0');
-    std::uint64_t bytes = text.size();
-    instance_->call("report", [&](toile_instance* instance) {
-        return fit_->report(instance, text.data(), &bytes);
-    });
-    text.resize(std::min<std::uint64_t>(bytes, text.size()));
-    out.report = nlohmann::ordered_json::parse(text, nullptr, false);
-    if (out.report.is_discarded()) throw Error(instance_->id() + ": its report is not JSON");
+    for (std::uint32_t i = 0; i < instants_; ++i)
+        out.surfaces.push_back(take_surface(i).mesh);
+    out.report = take_report();
     return out;
 }
 

@@ -1,6 +1,7 @@
 #include "render/import.h"
 
 #include "core/error.h"
+#include "imaging/srgb.h"
 
 #include <map>
 
@@ -28,6 +29,17 @@ Eigen::Affine3f placement(const assets::Scene& scene, int node) {
     return out;
 }
 
+std::vector<Vec3f> linear_colors(const assets::Primitive& p) {
+    std::vector<Vec3f> out;
+    out.reserve(p.colors.size());
+    const auto light = [](std::uint8_t v) {
+        return imaging::linear_from_srgb(static_cast<float>(v) / 255.0f);
+    };
+    for (const auto& c : p.colors)
+        out.emplace_back(light(c[0]), light(c[1]), light(c[2]));
+    return out;
+}
+
 MeshId add_primitive(Renderer& renderer, const assets::Primitive& p, const Eigen::Affine3f& place,
                      Box& box) {
     std::vector<Vec3f> positions(p.positions.size());
@@ -46,6 +58,8 @@ MeshId add_primitive(Renderer& renderer, const assets::Primitive& p, const Eigen
     MeshDescription d;
     d.texcoords = p.texcoords;
     d.triangles = p.triangles;
+    const std::vector<Vec3f> colors = linear_colors(p);
+    d.colors = colors;
     geometry::TriangleMesh welded;
     if (normals.empty()) {
         welded = geometry::weld(positions, p.triangles, p.texcoords, layout);

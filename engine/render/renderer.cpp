@@ -37,11 +37,12 @@ struct Drawable {
 };
 
 // What a mesh's shader must do beyond plain colour.
-enum Variant : unsigned { kTextured = 1, kHoles = 2, kNormalMap = 4, kVariants = 8 };
+enum Variant : unsigned { kTextured = 1, kHoles = 2, kNormalMap = 4, kColored = 8, kVariants = 16 };
 
 std::string defines(unsigned variant) {
     std::string text;
-    if (variant != 0) text += "#define TEXTURED\n";
+    if ((variant & ~kColored) != 0) text += "#define TEXTURED\n";
+    if ((variant & kColored) != 0) text += "#define COLORED\n";
     if ((variant & kHoles) != 0) text += "#define HOLES\n";
     if ((variant & kNormalMap) != 0) text += "#define NORMAL_MAP\n";
     return text;
@@ -234,6 +235,7 @@ void Renderer::Impl::collect(const Scene& scene) {
         if (base != nullptr) d.variant |= kTextured;
         if (m.base_color.w() < 0.5f || (base != nullptr && base->holes)) d.variant |= kHoles;
         if (m.normal_texture != TextureId::none) d.variant |= kNormalMap;
+        if (d.mesh->colors.id() != 0) d.variant |= kColored;
         if (instance.draw == Instance::Draw::visible) {
             const auto index = static_cast<std::size_t>(instance.material);
             d.material_index = static_cast<float>(index) / 255.0f;

@@ -49,6 +49,11 @@ void check_mesh(const MeshDescription& m) {
         throw Error("mesh to draw: " + std::to_string(m.texcoords.size()) +
                     " texture coordinates for " + std::to_string(nv) + " vertices");
     }
+    if (!m.colors.empty() && m.colors.size() != nv) {
+        throw Error("mesh to draw: " + std::to_string(m.colors.size()) + " colours for " +
+                    std::to_string(nv) + " vertices");
+    }
+    if (!finite(m.colors)) throw Error("mesh to draw: a colour is not finite");
     if (!m.normals.empty() && m.normals.size() != m.positions.size()) {
         throw Error("mesh to draw: " + std::to_string(m.normals.size()) + " normals for " +
                     std::to_string(m.positions.size()) + " positions");
@@ -217,6 +222,8 @@ MeshId Resources::add_mesh(const MeshDescription& description) {
     if (!description.texcoords.empty()) {
         m->texcoords = make_attribute(gl_, 2, 2, nv, description.texcoords.data(), GL_STATIC_DRAW);
     }
+    if (!description.colors.empty())
+        m->colors = make_attribute(gl_, 3, 3, nv, description.colors.data(), GL_STATIC_DRAW);
     m->indices =
         make_buffer(gl_, GL_ELEMENT_ARRAY_BUFFER, description.triangles.size() * sizeof(Triangle),
                     description.triangles.data(), GL_STATIC_DRAW);

@@ -25,6 +25,7 @@ struct GpuMesh {
     GlObject positions;
     GlObject normals;
     GlObject texcoords;
+    GlObject colors;
     GlObject indices;
     GLsizei index_count = 0;
     std::size_t surface_count = 0;

@@ -39,6 +39,7 @@ struct MeshDescription {
     std::span<const Triangle> triangles;   ///< (nt) into the drawn vertices
     std::span<const std::uint32_t> source; ///< (nv) into the surface vertices, or empty
     std::span<const Vec2f> texcoords;      ///< (nv) origin at the top left, or empty
+    std::span<const Vec3f> colors;         ///< (nv) linear, multiply the material's; or empty
     std::span<const Vec3f> positions;      ///< (ns) first positions, metres
     std::span<const Vec3f> normals;        ///< (ns) unit, or empty: computed from the triangles
 };

@@ -1,6 +1,6 @@
-// Kind toile.resizer/1 (draft) for a class P with
-//     void resize(const toile_resize_request& request, toile_view_mut positions, Job job); //
-//     [worker]
+// Kind toile.resizer/1 for a class P with
+//     void resize(const toile_resize_request& request, toile_view_mut positions, Job job);
+//     // [worker]
 #pragma once
 
 #include "abi/resizer.h"

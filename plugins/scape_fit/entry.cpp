@@ -68,7 +68,7 @@ class ScapeFit {
         person_.reset();
         try {
             if (input.scan != nullptr)
-                session.add_scan(mesh_of(*input.scan));
+                session.add_scan(mesh_of(*input.scan), colors_of(*input.scan));
             else if (input.frame_count > 0)
                 add_frames(session, input);
             else
@@ -196,6 +196,11 @@ class ScapeFit {
             out.triangles.push_back(t);
         }
         return out;
+    }
+
+    static std::vector<Rgba> colors_of(const toile_mesh& scan) {
+        const auto rows = sdk::span_of<Rgba>(scan.colors, "scan.colors");
+        return {rows.begin(), rows.end()};
     }
 
     void add_frames(fit::FitSession& session, const toile_body_source_input& input) {

@@ -1,7 +1,9 @@
 #include "scape_fit/fit_session.h"
 
 #include "body/rotations.h"
+#include "geometry/point_tree.h"
 #include "scape_fit/cloth_looseness.h"
+#include "scape_fit/skin_tone.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +15,7 @@ namespace {
 constexpr std::size_t kScanPoints = 40000;
 constexpr double kLeastPaired = 0.75;     // of a scan's area within reach of the fitted body
 constexpr double kMostRms = 0.02;         // metres, of a scan's points
+constexpr double kMostRmsLoose = 0.06;    // beneath the cloth of a scan
 constexpr double kLeastPairedDepth = 0.6; // grazing pixels have no partner
 constexpr double kMostRmsDepth = 0.045;
 constexpr double kLeastSeen = 0.12; // of the body's area: less says too little about it
@@ -31,6 +34,25 @@ std::string millimetres(double metres) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.0f mm", 1000.0 * metres);
     return text;
+}
+
+/// Of points on a scan: the hue of its vertex nearest to each.
+std::vector<Vec2f> hues_at(std::span<const Vec3f> points, const geometry::TriangleMesh& scan,
+                           const std::vector<std::array<std::uint8_t, 4>>& colors,
+                           double metres_per_unit) {
+    std::vector<Vec3f> places;
+    std::vector<std::size_t> vertices;
+    for (std::size_t v = 0; v < colors.size(); ++v) {
+        if (!scan.positions[v].allFinite()) continue;
+        places.emplace_back(static_cast<float>(metres_per_unit) * scan.positions[v]);
+        vertices.push_back(v);
+    }
+    const geometry::PointTree tree(places);
+    std::vector<Vec2f> out;
+    out.reserve(points.size());
+    for (const Vec3f& p : points)
+        out.push_back(hue_of(colors[vertices[tree.nearest(p).index]].data()));
+    return out;
 }
 
 /// Share of the body's area with points within 3 cm.
@@ -98,8 +120,13 @@ void FitSession::add_instant(std::vector<imaging::DepthImage> depths,
     fitted_ = false;
 }
 
-void FitSession::add_scan(geometry::TriangleMesh scan) {
+void FitSession::add_scan(geometry::TriangleMesh scan,
+                          std::vector<std::array<std::uint8_t, 4>> colors) {
+    if (!colors.empty() && colors.size() != scan.positions.size())
+        throw NotFitted("a scan has " + std::to_string(scan.positions.size()) + " points and " +
+                        std::to_string(colors.size()) + " colours");
     scan_ = std::move(scan);
+    scan_colors_ = std::move(colors);
     fitted_ = false;
 }
 
@@ -116,6 +143,9 @@ FitSession::Input FitSession::scan_input() {
     out.notes["floor_found"] = scan.floor.has_value();
     out.notes["removed_share"] = scan.removed_share;
     out.notes["has_holes"] = !scan.observation.rim.empty();
+    if (!scan_colors_.empty())
+        scan.observation.hues =
+            hues_at(scan.observation.points, *scan_, scan_colors_, scan.metres_per_unit);
     out.observations.push_back(std::move(scan.observation));
     return out;
 }
@@ -190,8 +220,9 @@ FitSession::Input FitSession::depth_input(const SessionOptions& options, const R
 }
 
 void FitSession::judge(const Input& input) const {
-    const double paired = input.depth ? kLeastPairedDepth : kLeastPaired;
-    const double rms = input.depth ? kMostRmsDepth : kMostRms;
+    const bool loose = input.options.dressed && !input.depth; // skirts stand far off
+    const double paired = input.depth || loose ? kLeastPairedDepth : kLeastPaired;
+    const double rms = input.depth ? kMostRmsDepth : loose ? kMostRmsLoose : kMostRms;
     const std::string far = "the likeliest body explains only " + percent(result_.paired_share) +
                             " of what was seen, " + millimetres(result_.rms_m) + " off";
     if (result_.paired_share < paired || result_.rms_m > rms)

@@ -32,7 +32,9 @@ class FitSession {
     /// \throw NotFitted when sizes differ
     void add_instant(std::vector<imaging::DepthImage> depths,
                      std::vector<imaging::Image> colors = {});
-    void add_scan(geometry::TriangleMesh scan);
+    /// `colors` (nv) sRGB of its vertices, or none; of a dressed person they tell skin from cloth.
+    void add_scan(geometry::TriangleMesh scan,
+                  std::vector<std::array<std::uint8_t, 4>> colors = {});
 
     /// \throw NotFitted, Cancelled
     void fit(const SessionOptions& options, const RowLoop& rows);
@@ -65,6 +67,7 @@ class FitSession {
     std::vector<std::vector<imaging::DepthImage>> instants_;
     std::vector<std::vector<imaging::Image>> colors_; ///< of the instants
     std::optional<geometry::TriangleMesh> scan_;
+    std::vector<std::array<std::uint8_t, 4>> scan_colors_;
     bool fitted_ = false;
     FitResult result_;
     body::BodyShape rest_;

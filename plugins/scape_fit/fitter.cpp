@@ -1,6 +1,7 @@
 #include "scape_fit/fitter.h"
 
 #include "core/error.h"
+#include "geometry/nearest_surface.h"
 #include "scape_fit/floor_contact.h"
 #include "scape_fit/skin_tone.h"
 
@@ -31,6 +32,12 @@ struct Fitter::Stage {
 
 namespace {
 
+constexpr float kPoke = 0.002f;    // metres: a body so far out of its cloth is drawn in
+constexpr float kMostPoke = 0.06f; // farther it is another sheet of it
+constexpr int kPokeRounds = 2;
+constexpr float kBeneath = -0.7f; // up of a normal that looks down
+constexpr std::size_t kFaceStarts = 2;
+constexpr double kLeastBare = 0.12; // share of skin that says where a dressed body stands
 constexpr std::size_t kStartPoints = 400;
 constexpr std::size_t kStarts = 6;
 constexpr double kBetterArm = 0.97; // of the points' distance: else the arm stays
@@ -104,7 +111,8 @@ FitOptions options_for_pictures(std::size_t cameras, std::size_t instants) {
 
 FitOptions options_for_scan() {
     FitOptions out;
-    out.free_form = out.dressed_free_form = {0.008, 0.06, 2e9};
+    out.free_form = {0.008, 0.06, 2e9};
+    out.dressed_free_form = {0.004, 0.15, 1.5e8};
     return out;
 }
 
@@ -272,7 +280,7 @@ FitResult Fitter::start_instant(std::span<const Observation> seen, const FitResu
     loose.camera = {}, loose.cameras.clear();
     FitResult best;
     best.rms_m = std::numeric_limits<double>::max();
-    for (const Start& start : library_.find(few, options.ups, kStarts, rows)) {
+    for (const Start& start : library_.find(few, options.ups, options.starts, rows)) {
         FitResult tried;
         tried.state.shape.coefficients =
             before.state.poses.empty() ? start.shape : before.state.shape.coefficients;
@@ -285,7 +293,7 @@ FitResult Fitter::start_instant(std::span<const Observation> seen, const FitResu
         refine(observed, second, loose, rows, tried);
         if (tried.rms_m < best.rms_m) best = std::move(tried);
     }
-    retry_arms(observed, loose, rows, best);
+    if (options.starts >= kStarts) retry_arms(observed, loose, rows, best);
     return best;
 }
 
@@ -382,14 +390,18 @@ std::optional<double> Fitter::find_covers(const FitState& state,
         faces.emplace_back(places);
     }
     std::vector<Vec2f> of_faces;
+    bool scan = false; // of a mannequin, perhaps: its skin is of any colour
     for (const Observation& one : observations)
         for (std::size_t i = 0; i < one.hues.size(); ++i) {
             const auto near = faces[one.instant].nearest(one.points[i]);
             if (near.squared > kOnFace * kOnFace) continue;
-            if (normals[one.instant][near.index].dot(*one.eye - one.points[i]) <= 0.0f) continue;
+            const Vec3f& normal = normals[one.instant][near.index];
+            if (one.eye && normal.dot(*one.eye - one.points[i]) <= 0.0f) continue;
+            if (!one.eye && !one.normals.empty() && normal.dot(one.normals[i]) <= 0.0f) continue;
+            scan = scan || !one.eye;
             of_faces.push_back(one.hues[i]);
         }
-    const auto tone = SkinTone::learn(of_faces);
+    const auto tone = SkinTone::learn(of_faces, scan);
     if (!tone) return std::nullopt;
     std::size_t skin = 0, all = 0;
     for (Observation& one : observations) {
@@ -402,6 +414,74 @@ std::optional<double> Fitter::find_covers(const FitState& state,
         all += one.points.size();
     }
     return static_cast<double>(skin) / static_cast<double>(all);
+}
+
+/// Skin alone, where colours tell it from cloth and there is enough of it; else nothing.
+std::vector<Observation> Fitter::bare_points(const FitState& state,
+                                             std::span<const Observation> observations) const {
+    std::vector<Observation> told(observations.begin(), observations.end());
+    const auto share = find_covers(state, told);
+    if (!share || *share < kLeastBare) return {};
+    for (Observation& one : told) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < one.points.size(); ++i) {
+            if (one.covers[i] != Cover::skin) continue;
+            // What closes a hem is no skin, although it has the colour of the legs beside it.
+            const Vec3f up = state.poses.at(one.instant).rotations[0] * Vec3f::UnitY();
+            if (!one.normals.empty() && one.normals[i].dot(up) < kBeneath) continue;
+            one.points[kept] = one.points[i];
+            if (!one.normals.empty()) one.normals[kept] = one.normals[i];
+            one.areas[kept] = one.areas[i];
+            ++kept;
+        }
+        one.points.resize(kept);
+        if (!one.normals.empty()) one.normals.resize(kept);
+        one.areas.resize(kept);
+        one.hues.clear();
+        one.covers.clear();
+        one.rim.clear();
+        one.complete = false;
+    }
+    return told;
+}
+
+/// A dressed body in a scan of one instant: from its skin, within its cloth.
+void Fitter::fit_bare(std::span<const Observation> observations, const Scope& scope,
+                      FitOptions options, const RowLoop& rows, std::vector<Observation>& bare,
+                      FitResult& result) {
+    double bare_points = 0.0, all_points = 0.0;
+    for (const Observation& one : bare)
+        bare_points += static_cast<double>(one.points.size());
+    for (const Observation& one : observations)
+        all_points += static_cast<double>(one.points.size());
+    result = start(bare, scope, options, rows);
+    result.sex = options.sex.value_or(likelier_sex(result.state.shape.coefficients));
+    for (int round = 0; round <= kPokeRounds; ++round) {
+        auto held = bare;
+        if (round > 0) add_poked(observations, result.state, held);
+        find_together(held, scope, options, rows, result);
+        if (round == kPokeRounds && !options.rough) find_detail(held, scope, options, rows, result);
+    }
+    result.skin_share = bare_points / all_points;
+}
+
+/// Points of cloth that the body sticks out of hold it, as skin does.
+void Fitter::add_poked(std::span<const Observation> observations, const FitState& state,
+                       std::vector<Observation>& held) const {
+    for (std::size_t f = 0; f < observations.size(); ++f) {
+        const Observation& one = observations[f];
+        PosedLevel posed;
+        pose_level(model_, model_.level(1), state.shape, state.poses.at(one.instant), posed);
+        const geometry::NearestSurface body(posed.positions, model_.level(1).triangles);
+        for (std::size_t i = 0; i < one.points.size(); ++i) {
+            const auto near = body.nearest(one.points[i], kMostPoke);
+            if (near.triangle == geometry::kNoTriangle || near.signed_distance > -kPoke) continue;
+            if (!one.normals.empty() && near.normal.dot(one.normals[i]) < 0.7f) continue;
+            held[f].points.push_back(one.points[i]);
+            if (!one.normals.empty()) held[f].normals.push_back(one.normals[i]);
+            held[f].areas.push_back(one.areas[i]);
+        }
+    }
 }
 
 /// What is seen is cloth: the body lies within it, and where cloth is tight in one of the instants
@@ -436,7 +516,20 @@ FitResult Fitter::fit(std::span<const Observation> observations, const FitOption
     FitOptions options = wanted;
     // Cloth is no shape of a body: the prior holds against it.
     if (wanted.dressed) options.shape_weight = std::max(wanted.shape_weight, kDressedStartWeight);
-    FitResult result = start(observations, scope, options, rows);
+    FitResult result;
+    const bool scan_of_clothes = options.dressed && !scope.depth && !observations[0].hues.empty();
+    if (scan_of_clothes) {
+        FitOptions face = options; // only where the face is: it tells the colour of skin
+        face.starts = kFaceStarts;
+        result = start(observations, scope, face, rows);
+        // Skirts and sleeves of a scan draw a body far off: what is bare is fitted alone.
+        auto bare = bare_points(result.state, observations);
+        if (!bare.empty()) {
+            fit_bare(observations, scope, options, rows, bare, result);
+            return result;
+        }
+    }
+    result = start(observations, scope, options, rows);
     result.sex = options.sex.value_or(likelier_sex(result.state.shape.coefficients));
     find_together(observations, scope, options, rows, result);
     if (options.rough) return result;

@@ -20,8 +20,9 @@ struct FitOptions {
     ClothGapOptions cloth;                ///< of dressed people
     double dressed_shape_weight = 0.4;    ///< of the prior beneath clothes
     FreeFormOptions dressed_free_form;    ///< beneath clothes
-    bool rough = false;                   ///< stop before the finest surface
-    bool use_free_form = true;            ///< move onto detail that the components cannot show
+    std::size_t starts = 6;    ///< bodies of the library that are tried; arms anew for no fewer
+    bool rough = false;        ///< stop before the finest surface
+    bool use_free_form = true; ///< move onto detail that the components cannot show
     FreeFormOptions free_form;
     /// Pairs and detail anew, so often: what is far off the components is reached step by step.
     int detail_rounds = 4;
@@ -85,6 +86,12 @@ class Fitter {
                       const FitOptions& options, const RowLoop& rows, FitResult& result);
     [[nodiscard]] std::optional<double> find_covers(const FitState& state,
                                                     std::vector<Observation>& observations) const;
+    [[nodiscard]] std::vector<Observation>
+    bare_points(const FitState& state, std::span<const Observation> observations) const;
+    void fit_bare(std::span<const Observation> observations, const Scope& scope, FitOptions options,
+                  const RowLoop& rows, std::vector<Observation>& bare, FitResult& result);
+    void add_poked(std::span<const Observation> observations, const FitState& state,
+                   std::vector<Observation>& held) const;
     void retry_arms(std::span<ObservedPoints> observed, const FitOptions& options,
                     const RowLoop& rows, FitResult& best);
     [[nodiscard]] body::Sex likelier_sex(const ShapeVector& shape) const;

@@ -15,6 +15,7 @@ constexpr float kDarkest = 0.01f, kBrightest = 0.97f; // linear light
 constexpr std::size_t kFewest = 60;                   // pixels of a face
 constexpr float kMostSpread = 0.25f;                  // of a face's hues
 constexpr float kLeastReach = 0.12f;                  // of one skin: blood, tan, shade
+constexpr float kPaintReach = 0.05f;                  // of a mannequin's
 constexpr float kMostReach = 0.25f;
 constexpr float kReachBySpread = 3.0f;
 // Skin of all people, with room for the light of lamps: red well above green, green above blue. A
@@ -39,7 +40,7 @@ Vec2f hue_of(const std::uint8_t* srgb) {
     return {std::log(light[0] / light[1]), std::log(light[2] / light[1])};
 }
 
-std::optional<SkinTone> SkinTone::learn(std::span<const Vec2f> face) {
+std::optional<SkinTone> SkinTone::learn(std::span<const Vec2f> face, bool of_mannequins) {
     std::vector<float> red, blue;
     for (const Vec2f& hue : face) {
         if (!hue.allFinite()) continue;
@@ -57,9 +58,10 @@ std::optional<SkinTone> SkinTone::learn(std::span<const Vec2f> face) {
     const auto within = [](float v, const std::array<float, 2>& range) {
         return v >= range[0] && v <= range[1];
     };
-    if (spread > kMostSpread || !within(out.hue_.x(), kRed) || !within(out.hue_.y(), kBlue))
-        return std::nullopt;
-    out.reach_ = std::clamp(kReachBySpread * spread, kLeastReach, kMostReach);
+    const bool human = within(out.hue_.x(), kRed) && within(out.hue_.y(), kBlue);
+    if (spread > kMostSpread || !(human || of_mannequins)) return std::nullopt;
+    out.reach_ = std::clamp(kReachBySpread * spread,
+                            human && !of_mannequins ? kLeastReach : kPaintReach, kMostReach);
     return out;
 }
 

@@ -17,8 +17,9 @@ namespace toile::scape_fit {
 class SkinTone {
   public:
     /// From what was seen of a face; NaNs are left out. Nothing where too little was seen, where
-    /// it is of many colours, or of one that no skin has in white light.
-    [[nodiscard]] static std::optional<SkinTone> learn(std::span<const Vec2f> face);
+    /// it is of many colours, or of one that no skin has in white light (unless `of_mannequins`).
+    [[nodiscard]] static std::optional<SkinTone> learn(std::span<const Vec2f> face,
+                                                       bool of_mannequins = false);
 
     /// \pre `hue` is finite
     [[nodiscard]] bool like(const Vec2f& hue) const;

@@ -339,13 +339,15 @@ AT(toile_entry, count, 32);
 AT(toile_entry, describe, 40);
 AT(toile_entry, create, 48);
 
-SIZE(toile_resize_request, 72);
+SIZE(toile_resize_request, 88);
 AT(toile_resize_request, size, 0);
 AT(toile_resize_request, strips, 4);
 AT(toile_resize_request, subject, 8);
 AT(toile_resize_request, target, 16);
-AT(toile_resize_request, region_weight, 24);
-AT(toile_resize_request, girths, 48);
+AT(toile_resize_request, region, 24);
+AT(toile_resize_request, target_region, 48);
+AT(toile_resize_request, body_before, 72);
+AT(toile_resize_request, body_after, 80);
 
 SIZE(toile_resizer, 16);
 AT(toile_resizer, size, 0);

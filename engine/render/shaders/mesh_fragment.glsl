@@ -1,8 +1,11 @@
 // What is where: colour, normal towards the camera, material. Light comes later, once a pixel.
-// Variants TEXTURED, HOLES, NORMAL_MAP: a CPU rasteriser pays for every unused branch.
+// Variants TEXTURED, COLORED, HOLES, NORMAL_MAP: a CPU rasteriser pays for every unused branch.
 in vec3 world_normal;
 uniform vec4 base_color;
 uniform float material; // index / 255; 0: hides what is behind it, is not seen
+#ifdef COLORED
+in vec3 surface_color;
+#endif
 #ifdef TEXTURED
 in vec2 surface_texcoord;
 uniform sampler2D base_color_texture;
@@ -37,6 +40,9 @@ void main() {
     vec4 base = base_color;
 #ifdef TEXTURED
     base *= texture(base_color_texture, surface_texcoord);
+#endif
+#ifdef COLORED
+    base.rgb *= surface_color;
 #endif
 #ifdef HOLES
     if (base.a < 0.5) discard;
