@@ -192,7 +192,7 @@ ScannedGarment separate_garment(const geometry::TriangleMesh& scan,
     if (geometry::surface_area(open) < kLeastArea)
         throw Error("hardly any cloth was found on the mannequin: it must differ from the "
                     "mannequin in colour, or stand off it");
-    geometry::CleanMesh sheet = geometry::clean_up(open, options);
+    const geometry::CleanMesh sheet = geometry::clean_up(open, options);
     ScannedGarment out;
     const geometry::TriangleMesh regular = even(sheet.mesh);
     out.mesh = mend(regular.positions, regular.triangles).mesh; // what was pinched stands apart
