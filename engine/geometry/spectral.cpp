@@ -17,7 +17,7 @@ class ShiftedSolve {
   public:
     using Scalar = double;
 
-    explicit ShiftedSolve(Eigen::SparseMatrix<double> A) : A_(std::move(A)) {}
+    explicit ShiftedSolve(const Eigen::SparseMatrix<double>& A) : A_(A) {}
 
     [[nodiscard]] Eigen::Index rows() const { return A_.rows(); }
     [[nodiscard]] Eigen::Index cols() const { return A_.cols(); }

@@ -27,7 +27,7 @@ TEST(Avatars, ArtistsGarmentsBindToAllThree) {
         options.id = name;
         options.made_on = "woman";
         const auto file = clothes / "base" / "clothes" / name / (std::string(name) + ".obj");
-        const auto import = garment::import_garment(file, options, &woman.rest);
+        const auto import = garment::import_garment(file, options, &woman);
         const auto& mesh = import.package.sizes[0].simulation;
         GarmentView garment;
         garment.positions = mesh.positions;
