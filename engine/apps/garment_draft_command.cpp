@@ -255,7 +255,7 @@ void draft(DraftOptions options, const garment::PackageLimits& limits) {
     if (block::is_garmentcode(file)) {
         options.body = options.body.empty() ? fs::path("women-m") : options.body;
         options.what = file.string();
-        block::Recipe none;
+        const block::Recipe none;
         write(design_of_file(options), options, orders_of(options, none), limits);
         return;
     }
