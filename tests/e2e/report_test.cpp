@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 namespace toile::test {
@@ -33,29 +34,15 @@ class ReportTest : public testing::Test {
     static void TearDownTestSuite() { delete folder_; }
     static fs::path page() { return *folder_ / "report.html"; }
 
-    /// Chromium without a window, on the page. Its profile is its own.
-    static ProgramResult browse(const std::string& anchor, const std::vector<std::string>& more) {
-        std::vector<std::string> words = {"timeout",
-                                          "120",
-                                          "chromium",
-                                          "--headless=new",
-                                          "--no-sandbox",
-                                          "--use-angle=swiftshader",
-                                          "--enable-unsafe-swiftshader",
-                                          "--hide-scrollbars",
-                                          "--window-size=1200,900",
-                                          "--virtual-time-budget=20000",
-                                          "--user-data-dir=" + (*folder_ / "profile").string()};
-        words.insert(words.end(), more.begin(), more.end());
-        words.push_back("file://" + page().string() + anchor);
-        return run_program(words);
-    }
-    static imaging::Image screenshot(const std::string& anchor) {
-        const fs::path file = *folder_ / "shot.png";
-        fs::remove(file);
-        const ProgramResult result = browse(anchor, {"--screenshot=" + file.string()});
-        EXPECT_TRUE(fs::exists(file)) << result.output;
-        return imaging::load_image(file);
+    /// The page in Chromium, its look loaded: {look, text, requests}. `shots`: anchor=picture.
+    static nlohmann::json browse(const std::vector<std::string>& shots) {
+        std::vector<std::string> words = {
+            "node", std::string(TOILE_SOURCE_DIR) + "/tests/e2e/browse.mjs",
+            "file://" + page().string(), (*folder_ / "profile").string()};
+        words.insert(words.end(), shots.begin(), shots.end());
+        const ProgramResult result = run_program(words);
+        EXPECT_EQ(result.status, 0) << result.output.substr(0, 400);
+        return result.status == 0 ? nlohmann::json::parse(result.output) : nlohmann::json();
     }
     static bool no_browser() { return std::system("command -v chromium >/dev/null 2>&1") != 0; }
 
@@ -99,18 +86,24 @@ TEST_F(ReportTest, OneFileHoldsEverything) {
     EXPECT_FALSE(holds(own, "{{"));
 }
 
-TEST_F(ReportTest, ABrowserLoadsTheLookAndReadsThePage) {
+TEST_F(ReportTest, ABrowserLoadsTurnsAndReadsIt) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    const ProgramResult dom = browse("", {"--dump-dom"});
-    // Not as a matcher: the page is megabytes long.
-    EXPECT_NE(dom.output.find("data-look=\"loaded\""), std::string::npos);
-    EXPECT_NE(dom.output.find("The sizes side by side"), std::string::npos);
-}
-
-TEST_F(ReportTest, TheLookCanBeTurned) {
-    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
-    const imaging::Image front = screenshot(""), again = screenshot("#turn=0"),
-                         back = screenshot("#turn=180");
+    const auto shot = [](const char* name) { return (*folder_ / name).string(); };
+    const nlohmann::json seen =
+        browse({"#turn=0=" + shot("front.png"), "#turn=180=" + shot("back.png"),
+                "#turn=360=" + shot("again.png")});
+    ASSERT_TRUE(seen.is_object());
+    EXPECT_EQ(seen["look"], "loaded");
+    const auto text = seen["text"].get<std::string>();
+    EXPECT_TRUE(holds(text, "The sizes side by side"));
+    EXPECT_TRUE(holds(text, "A <skirt> & more"));
+    for (const auto& request : seen["requests"]) {
+        const auto address = request.get<std::string>();
+        EXPECT_TRUE(address.starts_with("data:") || address.starts_with("blob:")) << address;
+    }
+    const auto front = imaging::load_image(shot("front.png")),
+               back = imaging::load_image(shot("back.png")),
+               again = imaging::load_image(shot("again.png"));
     EXPECT_LT(changed_look(front, again), 0.002);
     EXPECT_GT(changed_look(front, back), 0.02) << "the back looks like the front";
 }
