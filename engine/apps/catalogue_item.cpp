@@ -130,15 +130,11 @@ std::optional<double> ItemRecord::figure(const std::string& name) const {
 void make_item(const CataloguePlan& plan, const CatalogueItem& item, const GlobalOptions& global) {
     const std::string inputs = CatalogueInputs(plan, global.seed).digest(item);
     FittingRoom room(global, {item.body, split_names(item.garments, "garments"), item.size}, false);
-    const body::BodyModel& model = room.body().model();
-    const body::BodyVolumes volumes =
-        body::measure_volumes(model.skeleton, model.rest.positions, model.parts);
     pipeline::RunOptions options;
     options.measure_contact = true;
     options.seed = global.seed;
     options.interrupted = [] { return host::interrupt_flag().load(); };
-    const pipeline::RunReport run =
-        leave_to_hang(room, pose_from(item.pose, model.skeleton, volumes), options);
+    const pipeline::RunReport run = leave_to_hang(room, item.pose, options);
     if (host::interrupt_flag()) throw host::Cancelled("interrupted");
     if (const auto faults = room.person().faults(); !faults.empty()) throw Error(faults.front());
 

@@ -76,9 +76,7 @@ void dress(const DressCommand& command, const GlobalOptions& global) {
     const assets::ColoredMesh customer = load(command.customer, "--customer");
     host::catch_interrupts();
     host::Services services(global.threads);
-    host::RegistryOptions where;
-    where.folders = global.plugin_folders;
-    host::Registry registry(services, where);
+    host::Registry registry(services, registry_options(global));
     host::Job job({}, &host::interrupt_flag());
     pipeline::MannequinDressingRequest request;
     request.whole_body = command.fit == "body";

@@ -98,9 +98,7 @@ pipeline::FittedBody fit_body(const FitInput& input, const GlobalOptions& global
         throw UsageError("--frames " + std::to_string(input.frames) + ": at most 20 are of use");
     host::catch_interrupts();
     host::Services services(global.threads);
-    host::RegistryOptions where;
-    where.folders = global.plugin_folders;
-    host::Registry registry(services, where);
+    host::Registry registry(services, registry_options(global));
     const bool terminal = isatty(STDERR_FILENO) != 0;
     host::Job job(
         [terminal](double share, std::string_view) {

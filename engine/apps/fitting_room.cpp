@@ -11,12 +11,6 @@
 namespace toile::apps {
 namespace {
 
-host::RegistryOptions registry_options(const GlobalOptions& options) {
-    host::RegistryOptions out;
-    out.folders = options.plugin_folders;
-    return out;
-}
-
 std::string known(const std::vector<std::string>& ids) {
     std::string text;
     for (const std::string& id : ids)

@@ -45,7 +45,7 @@ void make_thumbnail(const std::string& id, std::string body, const GlobalOptions
                          " does not say what it was made on; choose "
                          "a --body");
     FittingRoom room(global, {body, {folder.string()}, size.name}, false);
-    leave_to_hang(room, body::rest_pose(room.body().model().skeleton), {});
+    leave_to_hang(room, "rest", {});
     const auto context = render::make_offscreen_context();
     render::RendererOptions options;
     options.width = options.height = kSide;

@@ -4,6 +4,12 @@
 
 namespace toile::apps {
 
+host::RegistryOptions registry_options(const GlobalOptions& global) {
+    host::RegistryOptions out;
+    out.folders = global.plugin_folders;
+    return out;
+}
+
 toile_limits limits_of(const GlobalOptions& global, const host::Services& services,
                        const Capacity& capacity, bool live_clock) {
     auto out = host::sized<toile_limits>();

@@ -3,6 +3,7 @@
 
 #include "abi/plugin.h"
 #include "apps/global_options.h"
+#include "host/registry.h"
 #include "host/services.h"
 
 namespace toile::apps {
@@ -17,6 +18,9 @@ struct Capacity {
 constexpr Capacity kDressedPerson{1, 200'000, 400'000};
 constexpr Capacity kScannedPerson{1, 2'000'000, 4'000'000};
 constexpr Capacity kSensedScene{16, 2'000'000, 4'000'000};
+
+/// Where every command looks for plugins.
+[[nodiscard]] host::RegistryOptions registry_options(const GlobalOptions& global);
 
 /// What every command gives its plugins: these sizes, the run's threads and seed, and on a live
 /// clock (frames that come late are dropped) a thirtieth of a second for a frame.

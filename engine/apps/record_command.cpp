@@ -173,9 +173,7 @@ class SurfaceRecorder {
 void record(const RecordOptions& options, const GlobalOptions& global) {
     host::catch_interrupts();
     host::Services services(global.threads);
-    host::RegistryOptions where;
-    where.folders = global.plugin_folders;
-    host::Registry registry(services, where);
+    host::Registry registry(services, registry_options(global));
     host::Job job({}, &host::interrupt_flag());
     pipeline::SensorSource source(options.source, registry, services,
                                   limits_of(global, services, kSensedScene, options.realtime), job);

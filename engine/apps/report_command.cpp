@@ -105,12 +105,10 @@ void report(const ReportOptions& options, const GlobalOptions& global) {
     FittingRoom room(
         global, {options.body, split_names(options.garments, "--garment"), options.size}, false);
     const body::BodyModel& model = room.body().model();
-    const body::BodyVolumes volumes =
-        body::measure_volumes(model.skeleton, model.rest.positions, model.parts);
     pipeline::RunOptions run;
     run.seed = global.seed;
     run.interrupted = [] { return host::interrupt_flag().load(); };
-    leave_to_hang(room, pose_from(options.pose, model.skeleton, volumes), run);
+    leave_to_hang(room, options.pose, run);
     if (host::interrupt_flag()) throw host::Cancelled("interrupted; no report was written");
 
     ReportContent content;

@@ -1,5 +1,6 @@
 #include "apps/still_look.h"
 
+#include "body/body_volumes.h"
 #include "body/motion.h"
 #include "core/error.h"
 #include "pipeline/motion_source.h"
@@ -19,8 +20,6 @@ bool seconds_behind(const std::string& text, std::size_t at, double& seconds) {
     return read.ec == std::errc() && read.ptr == end;
 }
 
-} // namespace
-
 body::Pose pose_from(const std::string& text, const body::Skeleton& skeleton,
                      const body::BodyVolumes& volumes) {
     if (text.empty() || text == "rest") return body::rest_pose(skeleton);
@@ -37,10 +36,15 @@ body::Pose pose_from(const std::string& text, const body::Skeleton& skeleton,
     return body::sample(motion, seconds);
 }
 
-pipeline::RunReport leave_to_hang(FittingRoom& room, const body::Pose& pose,
+} // namespace
+
+pipeline::RunReport leave_to_hang(FittingRoom& room, const std::string& pose,
                                   const pipeline::RunOptions& options) {
-    pipeline::MotionSource source(pipeline::still(pose), room.body().model().skeleton,
-                                  kFramesPerSecond, kSettle_s);
+    const body::BodyModel& model = room.body().model();
+    const body::BodyVolumes volumes =
+        body::measure_volumes(model.skeleton, model.rest.positions, model.parts);
+    pipeline::MotionSource source(pipeline::still(pose_from(pose, model.skeleton, volumes)),
+                                  model.skeleton, kFramesPerSecond, kSettle_s);
     pipeline::TryOnRun run(source, room.person(), options);
     while (run.next()) {
     }

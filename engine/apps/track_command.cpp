@@ -71,9 +71,7 @@ void track(const TrackOptions& options, const GlobalOptions& global) {
         throw UsageError("track --people must be 1 to " + std::to_string(kMostPeople));
     host::catch_interrupts();
     host::Services services(global.threads);
-    host::RegistryOptions where;
-    where.folders = global.plugin_folders;
-    host::Registry registry(services, where);
+    host::Registry registry(services, registry_options(global));
     host::Job job({}, &host::interrupt_flag());
     pipeline::PeopleSource source(options.source, registry, services,
                                   limits_of(global, services, kSensedScene, options.realtime),

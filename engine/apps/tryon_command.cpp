@@ -41,9 +41,6 @@ class TryOn {
         : options_(options),
           room_(global, {options.body, split_names(options.garments, "--garment"), options.size},
                 false),
-          volumes_(body::measure_volumes(room_.body().model().skeleton,
-                                         room_.body().model().rest.positions,
-                                         room_.body().model().parts)),
           views_(render::views_from_names(options.views)),
           map_(fit_map_from_name(options.fit_map)) {
         run_options_.measure_contact = !options_.report.empty();
@@ -53,8 +50,7 @@ class TryOn {
 
     // Stands in the pose until the cloth hangs, then draws every view side by side.
     void still() {
-        const body::Pose pose = pose_from(options_.pose, room_.body().model().skeleton, volumes_);
-        const pipeline::RunReport report = leave_to_hang(room_, pose, run_options_);
+        const pipeline::RunReport report = leave_to_hang(room_, options_.pose, run_options_);
         // Written first, so that it is there even if drawing fails.
         if (!options_.fit.empty())
             report_fit();
@@ -70,8 +66,11 @@ class TryOn {
 
     // Every frame of a motion as a picture.
     void moving() {
-        const body::Skeleton& skeleton = room_.body().model().skeleton;
-        const body::Motion motion = body::load_motion(options_.animation, skeleton, &volumes_);
+        const body::BodyModel& model = room_.body().model();
+        const body::Skeleton& skeleton = model.skeleton;
+        const body::BodyVolumes volumes =
+            body::measure_volumes(skeleton, model.rest.positions, model.parts);
+        const body::Motion motion = body::load_motion(options_.animation, skeleton, &volumes);
         pipeline::MotionSource source(motion, skeleton, kFramesPerSecond);
         if (options_.frames > 0) run_options_.most_frames = options_.frames;
         pipeline::TryOnRun run(source, room_.person(), run_options_);
@@ -141,7 +140,6 @@ class TryOn {
 
     const TryOnOptions& options_;
     FittingRoom room_;
-    body::BodyVolumes volumes_;
     std::vector<render::View> views_;
     FitMapKind map_;
     std::optional<garment::FitReport> fit_;

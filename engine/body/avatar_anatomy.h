@@ -8,6 +8,9 @@ namespace toile::body {
 
 /// The rig's weights on the template: merged to 22 joints, smoothed along the surface so that
 /// linear blending bends softly, four largest kept, symmetric. (nv)
+/// The body part that a joint moves most of.
+[[nodiscard]] Part part_of(Joint joint);
+
 [[nodiscard]] SkinWeights make_skin_weights(const AvatarTemplate& avatar,
                                             const MakeHumanData& data);
 

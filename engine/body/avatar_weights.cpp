@@ -78,6 +78,8 @@ void keep_largest(const JointRow& row, std::array<std::uint16_t, 4>& joints,
     }
 }
 
+} // namespace
+
 Part part_of(Joint joint) {
     switch (joint) {
     case Joint::hips:
@@ -112,8 +114,6 @@ Part part_of(Joint joint) {
         return Part::torso;
     }
 }
-
-} // namespace
 
 SkinWeights make_skin_weights(const AvatarTemplate& avatar, const MakeHumanData& data) {
     const auto refined = refined_rows(avatar, data);

@@ -3,12 +3,12 @@
 #include "support/json_schema.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
+#include "support/text_file.h"
 
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 namespace toile::test {
@@ -19,11 +19,6 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-std::string bytes(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class CatalogueTest : public testing::Test {
   protected:
@@ -65,24 +60,26 @@ TEST_F(CatalogueTest, MakesEveryItemAndNamesTheOneThatCannotBeMade) {
     const fs::path item = out_ / "skirt_auto_woman_rest";
     for (const char* view : {"front.png", "back.png"})
         EXPECT_EQ(imaging::load_image(item / view).height, 120);
-    EXPECT_NE(bytes(item / "front.png"), bytes(item / "back.png"));
+    EXPECT_NE(file_text(item / "front.png"), file_text(item / "back.png"));
     EXPECT_TRUE(fs::exists(item / "look.glb"));
-    EXPECT_THAT(JsonSchema("fit.schema.json").faults(json::parse(bytes(item / "fit.json"))),
+    EXPECT_THAT(JsonSchema("fit.schema.json").faults(json::parse(file_text(item / "fit.json"))),
                 IsEmpty());
-    const json record = json::parse(bytes(item / "item.json"));
+    const json record = json::parse(file_text(item / "item.json"));
     EXPECT_EQ(record["worn"]["skirt"]["size"], "S");
     EXPECT_LE(record["figures"]["deep_fraction_max"].get<double>(), 0.001);
-    const json results = json::parse(bytes(out_ / "results.json"));
+    const json results = json::parse(file_text(out_ / "results.json"));
     EXPECT_EQ(results["done"], 1);
     EXPECT_EQ(results["failed"], 1);
-    EXPECT_THAT(bytes(out_ / "summary.md"), HasSubstr("- nosuch_auto_woman_rest: failed: no gar"));
+    EXPECT_THAT(file_text(out_ / "summary.md"),
+                HasSubstr("- nosuch_auto_woman_rest: failed: no gar"));
     EXPECT_GT(imaging::load_image(out_ / "sheet-001.png").width, 2 * 90);
 }
 
 TEST_F(CatalogueTest, GoesOnWhereItWasAndTheResultIsTheSame) {
     const fs::path p = plan();
     ASSERT_EQ(make(p).status, 0);
-    const std::string results = bytes(out_ / "results.json"), sheet = bytes(out_ / "sheet-001.png");
+    const std::string results = file_text(out_ / "results.json"),
+                      sheet = file_text(out_ / "sheet-001.png");
     fs::remove_all(out_ / "skirt_auto_man_rest");
     std::ofstream(out_ / "skirt_auto_woman_rest" / "mark") << "kept";
     const ProgramResult again = make(p);
@@ -90,8 +87,8 @@ TEST_F(CatalogueTest, GoesOnWhereItWasAndTheResultIsTheSame) {
     EXPECT_THAT(again.output, HasSubstr("1 items were there already"));
     EXPECT_THAT(again.output, HasSubstr("[1/1] skirt_auto_man_rest"));
     EXPECT_TRUE(fs::exists(out_ / "skirt_auto_woman_rest" / "mark"));
-    EXPECT_EQ(bytes(out_ / "results.json"), results);
-    EXPECT_EQ(bytes(out_ / "sheet-001.png"), sheet);
+    EXPECT_EQ(file_text(out_ / "results.json"), results);
+    EXPECT_EQ(file_text(out_ / "sheet-001.png"), sheet);
     // A damaged record, or other inputs, and it is made again.
     std::ofstream(out_ / "skirt_auto_man_rest" / "item.json") << "{";
     const ProgramResult other = make(plan({{"picture", "60x80"}}));
@@ -103,18 +100,19 @@ TEST_F(CatalogueTest, GoesOnWhereItWasAndTheResultIsTheSame) {
 TEST_F(CatalogueTest, SharesPutTogetherAreTheWhole) {
     const fs::path p = plan();
     ASSERT_EQ(make(p).status, 0);
-    const std::string results = bytes(out_ / "results.json"), sheet = bytes(out_ / "sheet-001.png");
+    const std::string results = file_text(out_ / "results.json"),
+                      sheet = file_text(out_ / "sheet-001.png");
     out_ = folder_ / "shared";
     ASSERT_EQ(make(p, {"--share", "1/2"}).status, 0);
     EXPECT_FALSE(fs::exists(out_ / "skirt_auto_woman_rest"));
     const ProgramResult half = make(p, {"--merge"});
     EXPECT_EQ(half.status, 1);
     EXPECT_THAT(half.output, HasSubstr("1 not made"));
-    EXPECT_THAT(bytes(out_ / "summary.md"), HasSubstr("- skirt_auto_woman_rest: not made"));
+    EXPECT_THAT(file_text(out_ / "summary.md"), HasSubstr("- skirt_auto_woman_rest: not made"));
     ASSERT_EQ(make(p, {"--share", "0/2"}).status, 0);
     ASSERT_EQ(make(p, {"--merge"}).status, 0);
-    EXPECT_EQ(bytes(out_ / "results.json"), results);
-    EXPECT_EQ(bytes(out_ / "sheet-001.png"), sheet);
+    EXPECT_EQ(file_text(out_ / "results.json"), results);
+    EXPECT_EQ(file_text(out_ / "sheet-001.png"), sheet);
 }
 
 TEST_F(CatalogueTest, SingleLooksFollowTheCombinations) {
@@ -136,7 +134,8 @@ TEST_F(CatalogueTest, WhatIsBeyondTheLimitsIsNamed) {
         make(plan({{"bodies", {"woman"}}, {"limits", {{"strain_rms", 0.0}}}}));
     EXPECT_EQ(result.status, 0) << "it was made all the same";
     EXPECT_THAT(result.output, HasSubstr("1 beyond the plan's limits"));
-    EXPECT_THAT(bytes(out_ / "summary.md"), HasSubstr("- skirt_auto_woman_rest: strain_rms 0.0"));
+    EXPECT_THAT(file_text(out_ / "summary.md"),
+                HasSubstr("- skirt_auto_woman_rest: strain_rms 0.0"));
 }
 
 TEST_F(CatalogueTest, SlurmMakesTheSame) {
@@ -146,14 +145,14 @@ TEST_F(CatalogueTest, SlurmMakesTheSame) {
         run_program({slurm, toile_program(), "catalogue", p.string(), "--out", out_.string(),
                      "--slurm", "--slurm-tasks", "2", "--slurm-cpus", "1", "--wait"});
     if (submitted.status == 77) GTEST_SKIP() << "Slurm is not installed";
-    ASSERT_EQ(submitted.status, 0) << submitted.output << bytes(out_ / "merge.log");
+    ASSERT_EQ(submitted.status, 0) << submitted.output << file_text(out_ / "merge.log");
     EXPECT_THAT(submitted.output, HasSubstr("2 tasks make the items of"));
-    const std::string results = bytes(out_ / "results.json");
+    const std::string results = file_text(out_ / "results.json");
     EXPECT_EQ(json::parse(results)["done"], 2);
-    EXPECT_THAT(bytes(out_ / "make-1.log"), HasSubstr("[1/1] skirt_auto_man_rest"));
+    EXPECT_THAT(file_text(out_ / "make-1.log"), HasSubstr("[1/1] skirt_auto_man_rest"));
     out_ = folder_ / "here";
     ASSERT_EQ(make(p).status, 0);
-    EXPECT_EQ(bytes(out_ / "results.json"), results);
+    EXPECT_EQ(file_text(out_ / "results.json"), results);
 }
 
 TEST_F(CatalogueTest, WithoutSlurmItSaysSo) {

@@ -3,12 +3,12 @@
 #include "support/json_schema.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
+#include "support/text_file.h"
 
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 namespace toile::test {
@@ -18,11 +18,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-std::string bytes(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class FitReportTest : public testing::Test {
   protected:
@@ -37,7 +32,7 @@ class FitReportTest : public testing::Test {
         const ProgramResult result = tryon(garments, more);
         EXPECT_EQ(result.status, 0) << result.output;
         output_ = result.output;
-        return json::parse(bytes(fit_));
+        return json::parse(file_text(fit_));
     }
     static const json& row(const json& list, const char* key, const std::string& value) {
         for (const json& one : list)
@@ -48,7 +43,7 @@ class FitReportTest : public testing::Test {
     std::string copy(const std::string& garment, const std::string& id, int layer) {
         const fs::path to = folder_ / id;
         fs::copy(fs::path(TOILE_SOURCE_DIR) / "garments" / garment, to);
-        json j = json::parse(bytes(to / "garment.json"));
+        json j = json::parse(file_text(to / "garment.json"));
         j["id"] = id;
         j["layer"] = layer;
         std::ofstream(to / "garment.json") << j.dump();
@@ -109,7 +104,7 @@ TEST_F(FitReportTest, ASizeTooSmallIsTightAndALargerOneIsAdvised) {
 
 TEST_F(FitReportTest, TheMakersEaseClassDecidesWhereItIsGiven) {
     const std::string coat = copy("t-shirt", "coat", 3);
-    json package = json::parse(bytes(fs::path(coat) / "garment.json"));
+    json package = json::parse(file_text(fs::path(coat) / "garment.json"));
     package["ease_class"] = {{"chest", "very_loose"}, {"waist", "fitted"}};
     std::ofstream(fs::path(coat) / "garment.json") << package.dump();
     const json j = fit(coat, {"--body", "woman"});
@@ -144,10 +139,10 @@ TEST_F(FitReportTest, AnAlteredGarmentKeepsItsRoomOnAnotherBody) {
 
 TEST_F(FitReportTest, OneThreadAndTwoWriteTheSameBytes) {
     (void)fit("t-shirt", {"--fit-map", "ease", "--threads", "1"});
-    const std::string first = bytes(fit_), picture = bytes(png_);
+    const std::string first = file_text(fit_), picture = file_text(png_);
     (void)fit("t-shirt", {"--fit-map", "ease", "--threads", "2"});
-    EXPECT_TRUE(first == bytes(fit_));
-    EXPECT_TRUE(picture == bytes(png_));
+    EXPECT_TRUE(first == file_text(fit_));
+    EXPECT_TRUE(picture == file_text(png_));
 }
 
 TEST_F(FitReportTest, MapsStandBesideALegendInEveryView) {

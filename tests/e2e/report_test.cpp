@@ -2,13 +2,13 @@
 #include "imaging/image.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
+#include "support/text_file.h"
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -18,18 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 class ReportTest : public testing::Test {
   protected:
     static void SetUpTestSuite() {
         folder_ = new TemporaryFolder;
         made_ = run_toile({"report", "--body", "women-l", "--garment", "pencil-skirt", "--title",
                            "A <skirt> & more", "--out", page().string()});
-        html_ = text_of(page());
+        html_ = file_text(page());
     }
     static void TearDownTestSuite() { delete folder_; }
     static fs::path page() { return *folder_ / "report.html"; }

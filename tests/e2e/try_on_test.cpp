@@ -2,6 +2,7 @@
 #include "imaging/image.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
+#include "support/text_file.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +12,6 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -21,20 +21,16 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::string bytes(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 nlohmann::json report(const fs::path& file) {
-    return nlohmann::json::parse(bytes(file));
+    return nlohmann::json::parse(file_text(file));
 }
 
 // Every file of a folder but films and reports, whose contents may hold times.
 std::map<std::string, std::string> contents(const fs::path& folder) {
     std::map<std::string, std::string> out;
     for (const auto& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() != ".mp4") out[entry.path().filename()] = bytes(entry.path());
+        if (entry.path().extension() != ".mp4")
+            out[entry.path().filename()] = file_text(entry.path());
     return out;
 }
 
@@ -153,7 +149,7 @@ TEST_F(TryOnTest, TheSameBytesTwiceAndWithOneOrTwoThreads) {
 
 TEST_F(TryOnTest, TheArmThatIsLiftedMovesThePicture) {
     ASSERT_EQ(mirror("out", 30).status, 0);
-    EXPECT_NE(bytes(folder_ / "out" / "000000.png"), bytes(folder_ / "out" / "000025.png"));
+    EXPECT_NE(file_text(folder_ / "out" / "000000.png"), file_text(folder_ / "out" / "000025.png"));
 }
 
 TEST_F(TryOnTest, RealtimeReportsLatencyAndCountsEveryFrame) {
@@ -176,7 +172,7 @@ TEST_F(TryOnTest, TryOnWritesThePictureAndAThreeDimensionalFile) {
     const imaging::Image picture = imaging::load_image(png);
     EXPECT_EQ(picture.width, 360);
     EXPECT_EQ(picture.height, 240);
-    EXPECT_EQ(bytes(glb).substr(0, 4), "glTF");
+    EXPECT_EQ(file_text(glb).substr(0, 4), "glTF");
 }
 
 TEST_F(TryOnTest, AnAnimationFillsAFolder) {

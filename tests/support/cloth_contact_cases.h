@@ -135,6 +135,18 @@ struct Armpit {
     Mesh body, cloth;
     std::vector<float> held, arm_share; ///< of the cloth's vertices
 
+    /// The body with its arm this much lower; the cloth's targets follow.
+    [[nodiscard]] std::vector<Vec3f> lowered(float by, std::vector<Vec3f>& targets) const {
+        std::vector<Vec3f> out = body.positions;
+        for (std::size_t v = arm_first; v < out.size(); ++v) {
+            out[v].z() -= by;
+        }
+        for (std::size_t v = 0; v < targets.size(); ++v) {
+            targets[v] = cloth.positions[v] - Vec3f(0, 0, arm_share[v] * by);
+        }
+        return out;
+    }
+
     explicit Armpit(float gap) {
         body = capsule({-0.4f, 1.0f, 0.0f}, 0.8f, kTrunk);
         body.bind_to(2);
@@ -180,14 +192,7 @@ TEST(Contact, ClothBetweenLimbsThatRunIntoEachOtherStaysWhole) {
     const Armpit scene(kGap);
     Stage stage(scene.body, scene.cloth, {}, {}, scene.held);
     const auto move_to = [&](float closed) {
-        std::vector<Vec3f> body = scene.body.positions;
-        for (std::size_t v = scene.arm_first; v < body.size(); ++v) {
-            body[v].z() -= closed;
-        }
-        for (std::size_t v = 0; v < stage.targets.size(); ++v) {
-            stage.targets[v] = scene.cloth.positions[v] - Vec3f(0, 0, scene.arm_share[v] * closed);
-        }
-        ASSERT_EQ(stage.step_to(body), StepResult::ok);
+        ASSERT_EQ(stage.step_to(scene.lowered(closed, stage.targets)), StepResult::ok);
         EXPECT_LT(longest_stretch(stage), 0.4f) << "closed by " << closed;
     };
     const float whole = kGap + 0.015f;

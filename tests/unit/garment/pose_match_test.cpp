@@ -1,4 +1,5 @@
 // Garments modelled in another pose, and what a retailer's mesh is made of.
+#include "body/avatar_anatomy.h"
 #include "body/skinning.h"
 #include "body/usual_poses.h"
 #include "garment/openings.h"
@@ -16,41 +17,6 @@ namespace {
 using body::Joint;
 using body::Part;
 
-Part part_of_joint(std::size_t joint) {
-    switch (static_cast<Joint>(joint)) {
-    case Joint::hips:
-        return Part::pelvis;
-    case Joint::neck:
-        return Part::neck;
-    case Joint::head:
-        return Part::head;
-    case Joint::left_upper_arm:
-        return Part::left_upper_arm;
-    case Joint::left_lower_arm:
-    case Joint::left_hand:
-        return Part::left_lower_arm;
-    case Joint::right_upper_arm:
-        return Part::right_upper_arm;
-    case Joint::right_lower_arm:
-    case Joint::right_hand:
-        return Part::right_lower_arm;
-    case Joint::left_upper_leg:
-        return Part::left_upper_leg;
-    case Joint::left_lower_leg:
-    case Joint::left_foot:
-    case Joint::left_toes:
-        return Part::left_lower_leg;
-    case Joint::right_upper_leg:
-        return Part::right_upper_leg;
-    case Joint::right_lower_leg:
-    case Joint::right_foot:
-    case Joint::right_toes:
-        return Part::right_lower_leg;
-    default:
-        return Part::torso;
-    }
-}
-
 const body::BodyModel& figure_model() {
     static const body::BodyModel model = [] {
         const test::Figure figure = test::figure();
@@ -60,7 +26,7 @@ const body::BodyModel& figure_model() {
         out.skeleton = figure.skeleton;
         out.skin = figure.skin;
         for (const auto& joints : figure.skin.joints)
-            out.parts.push_back(part_of_joint(joints[0]));
+            out.parts.push_back(body::part_of(static_cast<Joint>(joints[0])));
         return out;
     }();
     return model;
