@@ -143,6 +143,16 @@ void Look::add_mapped(const pipeline::WornGarment& garment, std::size_t index,
         add_surface(garment, s, map_->texcoords(index, s), [material] { return material; });
 }
 
+void Look::spoil(Spoil how) {
+    for (render::Instance& instance : scene_.instances) {
+        const bool is_body = instance.mesh == body_;
+        if (how == Spoil::shadows) instance.casts_shadow = false;
+        if (how == Spoil::shift && !is_body)
+            instance.world_from_mesh.translation += Vec3f(0.01f, 0.0f, 0.0f);
+        if (how == Spoil::body && is_body) instance.draw = render::Instance::Draw::hidden;
+    }
+}
+
 void Look::update() {
     const auto check = [](render::Status status) {
         if (status != render::Status::ok)
@@ -188,6 +198,14 @@ render::Box bounds_now(const pipeline::DressedPerson& person) {
             box.add(p);
     box.low.y() = std::min(box.low.y(), 0.0f);
     return box;
+}
+
+Spoil spoil_from_name(const std::string& name) {
+    if (name.empty()) return Spoil::none;
+    if (name == "shift") return Spoil::shift;
+    if (name == "shadows") return Spoil::shadows;
+    if (name == "body") return Spoil::body;
+    throw UsageError("--spoil " + name + ": no such way; shift, shadows or body");
 }
 
 StageBox::StageBox(const pipeline::DressedPerson& person) {

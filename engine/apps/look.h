@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/fit_map.h"
+#include "apps/spoil.h"
 #include "pipeline/dressed_person.h"
 #include "render/frame_uniforms.h"
 #include "render/renderer.h"
@@ -24,6 +25,9 @@ class Look {
          FitMapKind map = FitMapKind::none);
     Look(const Look&) = delete;
     Look& operator=(const Look&) = delete;
+
+    /// Draws wrongly from now on, for tests.
+    void spoil(Spoil how);
 
     /// Takes over the person's surfaces as they are now. \throw Error when they are unfit
     void update();

@@ -31,6 +31,7 @@ struct TryOnOptions {
     std::string report;
     std::string fit;
     std::string fit_map;
+    std::string spoil;
     std::uint64_t frames = 0;
     PictureOptions picture;
 };
@@ -41,8 +42,8 @@ class TryOn {
         : options_(options),
           room_(global, {options.body, split_names(options.garments, "--garment"), options.size},
                 false),
-          views_(render::views_from_names(options.views)),
-          map_(fit_map_from_name(options.fit_map)) {
+          views_(render::views_from_names(options.views)), map_(fit_map_from_name(options.fit_map)),
+          spoil_(spoil_from_name(options.spoil)) {
         run_options_.measure_contact = !options_.report.empty();
         run_options_.seed = global.seed;
         run_options_.interrupted = [] { return host::interrupt_flag().load(); };
@@ -59,6 +60,7 @@ class TryOn {
         const auto context = render::make_offscreen_context();
         Look look(*context, options_.picture.renderer(), room_.person(), options_.picture.colourway,
                   map_);
+        look.spoil(spoil_);
         look.update();
         imaging::save_image(draw(look, bounds_now(room_.person())), options_.out);
         finish(report);
@@ -80,6 +82,7 @@ class TryOn {
         const auto context = render::make_offscreen_context();
         Look look(*context, options_.picture.renderer(), room_.person(), options_.picture.colourway,
                   map_);
+        look.spoil(spoil_);
         RunProgress progress;
         std::unique_ptr<StageBox> stage;
         while (run.next()) {
@@ -142,6 +145,7 @@ class TryOn {
     FittingRoom room_;
     std::vector<render::View> views_;
     FitMapKind map_;
+    Spoil spoil_;
     std::optional<garment::FitReport> fit_;
     pipeline::RunOptions run_options_;
 };
@@ -212,6 +216,11 @@ void add_tryon_commands(CLI::App& app, const GlobalOptions& global) {
                      "Colours the garments by the room they leave or by how they are stretched")
         ->type_name("ease|strain");
     options->picture.add_to(*command);
+    command
+        ->add_option("--spoil", options->spoil,
+                     "Draws wrongly on purpose: garments 1 cm to the side, no shadows, no body")
+        ->type_name("shift|shadows|body")
+        ->group("For tests of pictures");
     command->footer("Example: toile tryon --body woman --garment t-shirt,skirt --views front,back "
                     "--out look.png");
     command->callback([options, &global] { try_on(*options, global); });

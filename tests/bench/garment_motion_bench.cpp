@@ -9,6 +9,7 @@
 #include "garment/cloth_strain.h"
 #include "garment/contact_metrics.h"
 #include "garment/size_choice.h"
+#include "geometry/self_intersection.h"
 #include "host/job.h"
 #include "host/registry.h"
 #include "pipeline/motion_source.h"
@@ -115,6 +116,7 @@ struct Worst {
     std::size_t vertices = 0;
     double deep = 0.0, deep_sum = 0.0, deepest_mm = 0.0, visible = 0.0;
     double strain_rms = 0.0, strain_max = 0.0;
+    double cut = 0.0, cut_sum = 0.0; // fraction of triangles, each garment by itself
 
     explicit Worst(const pipeline::DressedPerson& person) {
         for (const pipeline::WornGarment& worn : person.garments()) {
@@ -147,6 +149,9 @@ struct Worst {
         strain_max = std::max(strain_max, largest);
         garment::ContactFigures now;
         if (options.measure) now = metrics_->measure(person.posed().positions, surfaces_);
+        const double cuts_now = options.measure ? cut_fraction() : 0.0;
+        cut = std::max(cut, cuts_now);
+        cut_sum += cuts_now;
         deep = std::max(deep, now.deep_fraction());
         deep_sum += now.deep_fraction();
         deepest_mm = std::max(deepest_mm, 1e3 * now.deepest_m);
@@ -154,10 +159,21 @@ struct Worst {
         if (options.each)
             std::cout << frame << " deep " << now.deep_fraction() << " deepest_mm "
                       << 1e3 * now.deepest_m << " visible " << now.visible_fraction() << " strain "
-                      << rms << " " << largest << std::endl;
+                      << rms << " " << largest << " cut " << cuts_now << std::endl;
     }
 
   private:
+    [[nodiscard]] double cut_fraction() const {
+        std::size_t cut_triangles = 0;
+        std::size_t triangles = 0;
+        for (const garment::ClothSurface& surface : surfaces_) {
+            const auto flags = geometry::self_intersecting(surface.positions, surface.triangles);
+            cut_triangles += std::count(flags.begin(), flags.end(), std::uint8_t{1});
+            triangles += flags.size();
+        }
+        return double(cut_triangles) / double(std::max<std::size_t>(triangles, 1));
+    }
+
     std::vector<garment::ClothStrain> strains_;
     std::vector<garment::ClothSurface> surfaces_;
     std::optional<garment::ContactMetrics> metrics_;
@@ -202,6 +218,8 @@ nlohmann::ordered_json run(const Options& options, const std::string& outfit) {
             {"deep_fraction_mean", worst.deep_sum / double(std::max<std::uint64_t>(frame, 1))},
             {"deepest_mm", worst.deepest_mm},
             {"visible_fraction_max", worst.visible},
+            {"cut_fraction_max", worst.cut},
+            {"cut_fraction_mean", worst.cut_sum / double(std::max<std::uint64_t>(frame, 1))},
             {"strain_rms_max", worst.strain_rms},
             {"strain_max", worst.strain_max},
             {"cloth_ms_median", report.stages.at("cloth").median_ms},

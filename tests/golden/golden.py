@@ -4,6 +4,8 @@ compares them with tests/golden/reference by `toile compare`. See docs/golden_te
 
 golden.py check   --toile PROGRAM --out DIR SCENE     one scene against its reference
 golden.py differ  --toile PROGRAM --out DIR PAIR      two commands whose pictures must differ
+golden.py broken  --toile PROGRAM --out DIR SCENE     its subject broken on purpose must be noticed
+golden.py table   --toile PROGRAM --out DIR           how far each break is noticed, as a table
 golden.py repeat  --toile PROGRAM --out DIR SCENE     same bytes for 0, 1 and 2 rasteriser threads
 golden.py update  --toile PROGRAM --out DIR [SCENE..] makes the references anew (scripts/update-goldens)
 """
@@ -12,13 +14,14 @@ import html
 import json
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-KEYS = {"about", "command", "other_command", "tolerance"}
+KEYS = {"about", "command", "other_command", "tolerance", "broken"}
 TOLERANCE_KEYS = {"fail": 0.02, "fail_percent": 0.1, "max": 0.5}
 
 
@@ -118,6 +121,47 @@ def differ(toile, out, name):
         sys.exit(f"golden {name}: a picture differs from itself: {text}")
 
 
+def break_scene(toile, out, name):
+    """Each way in which a scene is broken, and what the comparison with its reference says."""
+    scene = load(name)
+    reference = HERE / "reference" / f"{name}.png"
+    for number, broken in enumerate(scene.get("broken", [])):
+        if set(broken) not in ({"how", "add"}, {"how", "replace", "by"}):
+            sys.exit(f"{name}: /broken/{number}: how, and either add, or replace and by")
+        command = scene["command"]
+        if "add" in broken:
+            command += " " + broken["add"]
+        elif broken["replace"] not in command:
+            sys.exit(f"{name}: /broken/{number}: the command has no '{broken['replace']}'")
+        else:
+            command = command.replace(broken["replace"], broken["by"])
+        picture = out / f"{name}.broken{number}.png"
+        draw(toile, command, picture)
+        status, text = compare(toile, picture, reference, scene["tolerance"],
+                               out / f"{name}.broken{number}.difference.png")
+        yield broken["how"], status, text
+
+
+def check_broken(toile, out, name):
+    if not load(name).get("broken"):
+        sys.exit(f"golden {name}: /broken: says no way in which its subject can be broken")
+    for how, status, text in break_scene(toile, out, name):
+        print(f"{how}: {text}")
+        if status != 1:
+            sys.exit(f"golden {name}: not noticed: {how}")
+
+
+def write_table(toile, out):
+    rows = []
+    for scene in sorted(p.stem for p in (HERE / "scenes").glob("*.json")):
+        for how, status, text in break_scene(toile, out, scene):
+            share = re.search(r"\(([0-9.]+) %\)", text)
+            rows.append(f"| {scene} | {how} | {float(share.group(1)) if share else 100:.1f} | "
+                        f"{'yes' if status == 1 else 'NO'} |")
+    print("| scene | broken | pixels that differ, % | noticed |\n|---|---|---|---|")
+    print("\n".join(rows))
+
+
 def repeat(toile, out, name):
     scene = load(name)
     seen = {}
@@ -132,7 +176,7 @@ def repeat(toile, out, name):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("mode", choices=("check", "differ", "repeat", "update"))
+    parser.add_argument("mode", choices=("check", "differ", "broken", "table", "repeat", "update"))
     parser.add_argument("scenes", nargs="*")
     parser.add_argument("--toile", required=True)
     parser.add_argument("--out", required=True, type=pathlib.Path)
@@ -144,10 +188,13 @@ def main():
             draw(options.toile, load(name)["command"], HERE / "reference" / f"{name}.png")
             print(f"{name}: new reference")
         return
+    if options.mode == "table":
+        write_table(options.toile, options.out)
+        return
     if not options.scenes:
         sys.exit("no scene named")
     for name in options.scenes:
-        {"check": check, "differ": differ, "repeat": repeat}[options.mode](
+        {"check": check, "differ": differ, "broken": check_broken, "repeat": repeat}[options.mode](
             options.toile, options.out, name)
 
 
