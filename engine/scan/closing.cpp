@@ -164,10 +164,26 @@ void diffuse(NodeField& field, const std::vector<std::uint8_t>& guessed, const R
     }
 }
 
-void stand_on(NodeField& field, const geometry::Plane& floor) {
+/// What is guessed next to the floor, where readings are the floor's, goes on straight down from
+/// above; beneath the floor nothing is.
+void stand_on(NodeField& field, const std::vector<std::uint8_t>& guessed,
+              const geometry::Plane& floor) {
+    constexpr float kClear_m = 0.03f; // above that the subject is told from the floor
+    const std::vector<float> from = field.values;
+    const auto node_at = [&](const Vec3f& place) {
+        std::int64_t out[3];
+        for (int k = 0; k < 3; ++k)
+            out[k] =
+                std::clamp<std::int64_t>(std::lround((place[k] - field.origin[k]) / field.spacing),
+                                         0, field.size[static_cast<std::size_t>(k)] - 1);
+        return static_cast<std::size_t>(field.index(out[0], out[1], out[2]));
+    };
     for (std::size_t i = 0; i < field.values.size(); ++i) {
         const float height =
             floor.normal.dot(field.position(static_cast<std::int64_t>(i))) - floor.offset;
+        if (guessed[i] != 0 && height < kClear_m && height > -kClear_m)
+            field.values[i] = from[node_at(field.position(static_cast<std::int64_t>(i)) +
+                                           (kClear_m - height) * floor.normal)];
         field.values[i] = std::max(field.values[i], -height);
     }
 }
@@ -182,7 +198,7 @@ ClosedSurface closed_surface(const Volume& volume, std::span<const DepthView> vi
     const auto guessed = guess(field, Emptiness(views, poses), far, rows);
     close_box(field, far);
     diffuse(field, guessed, rows);
-    if (floor) stand_on(field, *floor);
+    if (floor) stand_on(field, guessed, *floor);
     ClosedSurface out;
     auto pieces = geometry::connected_pieces(geometry::level_surface(field));
     if (pieces.empty()) throw Error("no closed surface came out of what was seen");

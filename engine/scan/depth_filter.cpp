@@ -113,24 +113,25 @@ void drop_edges(DepthView& view, int pixels) {
 /// Weighted least squares of a + b dx + c dy through nearby inverse depths: a plane in space is one
 /// there too, and a triangulating sensor's noise is even.
 struct PlaneFit {
-    double s = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, d = 0, dx = 0, dy = 0;
+    float s = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, d = 0, dx = 0, dy = 0;
 
-    void add(double x, double y, double value, double weight) {
+    void add(float x, float y, float value, float weight) {
+        const float wx = weight * x, wy = weight * y;
         s += weight;
-        sx += weight * x;
-        sy += weight * y;
-        sxx += weight * x * x;
-        sxy += weight * x * y;
-        syy += weight * y * y;
+        sx += wx;
+        sy += wy;
+        sxx += wx * x;
+        sxy += wx * y;
+        syy += wy * y;
         d += weight * value;
-        dx += weight * value * x;
-        dy += weight * value * y;
+        dx += wx * value;
+        dy += wy * value;
     }
     [[nodiscard]] bool solve(Eigen::Vector3d& out) const {
         Eigen::Matrix3d a;
         a << s, sx, sy, sx, sxx, sxy, sy, sxy, syy;
         const double det = a.determinant();
-        if (s < 6.0 || det < 0.02 * s * s * s) return false;
+        if (s < 6.0f || det < 0.02 * double{s} * s * s) return false;
         out = a.inverse() * Eigen::Vector3d(d, dx, dy);
         return true;
     }
@@ -176,10 +177,13 @@ void fit_pixel(const DepthView& from, int x, int y, const FilterOptions& options
             const auto dx = static_cast<float>(u - x), dy = static_cast<float>(v - y);
             float weight = 1.0f / (1.0f + spread * (dx * dx + dy * dy));
             if (options.joint_bilateral) weight *= color_likeness(from, at, to);
-            fit.add(dx, dy, 1.0 / there, weight);
+            // Differences from the middle keep the digits of single precision.
+            fit.add(dx, dy, (here - there) / (here * there), weight);
         }
     Eigen::Vector3d plane;
-    if (!fit.solve(plane) || !(plane[0] > 0.0)) return;
+    if (!fit.solve(plane)) return;
+    plane[0] += 1.0 / here;
+    if (!(plane[0] > 0.0)) return;
     normal = normal_of(c, plane, static_cast<float>(x), static_cast<float>(y));
     if (options.joint_bilateral) depth = static_cast<float>(1.0 / plane[0]);
 }

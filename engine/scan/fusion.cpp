@@ -115,7 +115,7 @@ Registered RigidFusion::tracked(const DepthView& view) const {
         for (const float reach : attempt.reach_m) {
             RegistrationOptions options;
             options.reach_m = reach;
-            const SurfaceMap map = raycast(*model_, view.camera, kStride, found.pose, rows_);
+            const SurfaceMap map = raycast(*model_, view, kStride, reach, found.pose, rows_);
             found = register_view(view, map, found.pose, options, rows_);
         }
         if (found.overlap > best.overlap) best = found;
@@ -154,7 +154,7 @@ double RigidFusion::gap(std::size_t late, Pose& correction) const {
         for (const float reach : {0.1f, 0.05f, 0.03f}) {
             RegistrationOptions options;
             options.reach_m = reach;
-            const SurfaceMap map = raycast(start, views_[i].camera, 2, found.pose, rows_);
+            const SurfaceMap map = raycast(start, views_[i], 2, reach, found.pose, rows_);
             found = register_view(views_[i], map, found.pose, options, rows_);
         }
         if (found.overlap < kLeastOverlap) continue;

@@ -186,40 +186,60 @@ float crossing(const Volume& volume, const Vec3f& from, const Vec3f& along, floa
 
 } // namespace
 
-SurfaceMap raycast(const Volume& volume, const Window& camera, int stride,
+namespace {
+
+/// Nearest and farthest reading within a few pixels; nothing: far 0.
+struct Depths {
+    float near = std::numeric_limits<float>::infinity(), far = 0.0f;
+};
+
+Depths depths_around(const DepthView& view, int x, int y, int stride) {
+    Depths out;
+    const int reach = 2 * stride;
+    for (int v = y - reach; v <= y + reach; v += stride)
+        for (int u = x - reach; u <= x + reach; u += stride) {
+            if (u < 0 || v < 0 || u >= view.camera.width || v >= view.camera.height) continue;
+            const float depth = view.depth[view.camera.at(u, v)];
+            if (depth == 0.0f) continue;
+            out.near = std::min(out.near, depth);
+            out.far = std::max(out.far, depth);
+        }
+    return out;
+}
+
+} // namespace
+
+SurfaceMap raycast(const Volume& volume, const DepthView& view, int stride, float reach_m,
                    const Pose& scan_from_camera, const RowLoop& rows) {
     const float nothing = std::numeric_limits<float>::quiet_NaN();
+    const Window& camera = view.camera;
     const auto scale = 1.0f / static_cast<float>(stride);
     SurfaceMap out;
     out.camera = {camera.width / stride, camera.height / stride, camera.fx * scale,
                   camera.fy * scale,     camera.cx * scale,      camera.cy * scale};
     out.points.assign(out.camera.count(), Vec3f::Constant(nothing));
     out.normals = out.points;
-    Eigen::AlignedBox3f box;
-    const float block = volume.options().voxel_m * Volume::kSide;
-    const Eigen::Isometry3f pose = scan_from_camera.cast<float>(), back = pose.inverse();
-    float near = std::numeric_limits<float>::infinity(), far = 0.0f;
-    for (const auto& place : volume.blocks()) {
-        const Vec3f middle =
-            back * (volume.origin() + volume.options().voxel_m * place.cast<float>() +
-                    Vec3f::Constant(0.5f * block));
-        near = std::min(near, -middle.z() - block);
-        far = std::max(far, -middle.z() + block);
-    }
-    near = std::max(near, 0.1f);
+    const Eigen::Isometry3f pose = scan_from_camera.cast<float>();
+    const auto line = [&](int y) {
+        for (int x = 0; x < out.camera.width; ++x) {
+            const Depths depths = depths_around(view, x * stride, y * stride, stride);
+            if (depths.far == 0.0f) continue;
+            const Vec3f from = pose.translation(),
+                        along = pose.linear() *
+                                out.camera.ray(static_cast<float>(x), static_cast<float>(y));
+            const float t = crossing(volume, from, along, std::max(0.1f, depths.near - reach_m),
+                                     depths.far + reach_m);
+            float distance = 0.0f;
+            Vec3f slope;
+            if (!(t > 0.0f) || !volume.sample(from + t * along, distance, slope)) continue;
+            out.points[out.camera.at(x, y)] = from + t * along;
+            out.normals[out.camera.at(x, y)] = slope;
+        }
+    };
     rows(static_cast<std::uint32_t>(out.camera.height), 8,
          [&](std::uint32_t begin, std::uint32_t end) {
              for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-                 for (int x = 0; x < out.camera.width; ++x) {
-                     const Vec3f ray = out.camera.ray(static_cast<float>(x), static_cast<float>(y));
-                     const Vec3f along = pose.linear() * ray, from = pose.translation();
-                     const float t = crossing(volume, from, along, near, far);
-                     float distance = 0.0f;
-                     Vec3f slope;
-                     if (!(t > 0.0f) || !volume.sample(from + t * along, distance, slope)) continue;
-                     out.points[out.camera.at(x, y)] = from + t * along;
-                     out.normals[out.camera.at(x, y)] = slope;
-                 }
+                 line(y);
          });
     return out;
 }

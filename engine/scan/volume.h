@@ -70,9 +70,10 @@ struct SurfaceMap {
     std::vector<Vec3f> points, normals; ///< in the scan's coordinates
 };
 
-/// What a camera at `scan_from_camera` would see of the volume, every `stride`th pixel of `camera`.
-[[nodiscard]] SurfaceMap raycast(const Volume& volume, const Window& camera, int stride,
-                                 const Pose& scan_from_camera, const RowLoop& rows);
+/// What a camera at `scan_from_camera` would see of the volume within `reach` (metres) of what
+/// `view` reads there or a few pixels beside it, every `stride`th pixel.
+[[nodiscard]] SurfaceMap raycast(const Volume& volume, const DepthView& view, int stride,
+                                 float reach_m, const Pose& scan_from_camera, const RowLoop& rows);
 
 /// (pixels) depth of the volume's surface near each of the view's readings, 0 where there is none.
 [[nodiscard]] std::vector<float> predicted_depth(const Volume& volume, const DepthView& view,

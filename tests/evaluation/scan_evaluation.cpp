@@ -3,6 +3,7 @@
 // out=FILE.ply. Shares of time on stderr.
 #include "assets/colored_mesh.h"
 #include "assets/files.h"
+#include "body/surface_cache.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "imaging/capture_folder.h"
@@ -111,6 +112,19 @@ void print(const char* what, const evaluation::Deviation& d) {
                 1e3 * d.p95_m, 1e3 * d.most_m);
 }
 
+/// A mesh file, or the first frame of a recording's surface cache.
+geometry::TriangleMesh load_truth(const std::string& name) {
+    if (!std::filesystem::is_directory(name)) return assets::load_colored_mesh(name).mesh;
+    const body::SurfaceCache cache = body::open_surface_cache(name);
+    geometry::TriangleMesh out = assets::colored_mesh_of(cache.scene).mesh;
+    std::vector<std::vector<Vec3f>> positions;
+    cache.load(0, positions);
+    out.positions.clear();
+    for (const auto& part : positions)
+        out.positions.insert(out.positions.end(), part.begin(), part.end());
+    return out;
+}
+
 void compare(const geometry::TriangleMesh& scan, const geometry::TriangleMesh& truth,
              const Settings& s) {
     print("as it stands", evaluation::deviation(scan.positions, truth));
@@ -177,7 +191,7 @@ void run(const std::string& folder, const std::string& truth_file, const Setting
         assets::ColoredMesh mesh{fused.mesh, fused.colors};
         assets::save_scene(assets::scene_of(mesh, "scan"), s.out);
     }
-    compare(fused.mesh, assets::load_colored_mesh(truth_file).mesh, s);
+    compare(fused.mesh, load_truth(truth_file), s);
     clock.lap("compare");
 }
 
