@@ -10,8 +10,8 @@ namespace toile::scan {
 namespace {
 
 constexpr float kTrackingVoxel_m = 0.01f, kTrackingTruncation_m = 0.04f;
-constexpr double kLeastOverlap = 0.35; // of a view that fits
-constexpr double kMostRms_m = 0.02;
+constexpr double kLeastOverlap = 0.5; // of a view that fits
+constexpr double kMostRms_m = 0.008;
 
 Vec3f middle_of(const DepthView& view) {
     Vec3d sum = Vec3d::Zero();

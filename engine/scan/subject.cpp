@@ -2,8 +2,9 @@
 
 #include "geometry/floor_plane.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 
 namespace toile::scan {
 namespace {
@@ -18,6 +19,24 @@ struct Pieces {
     struct Piece {
         std::size_t count = 0;
         Eigen::AlignedBox3f box;
+        Vec3d sum = Vec3d::Zero();
+        Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+
+        void add(const Vec3f& p) {
+            ++count;
+            box.extend(p);
+            sum += p.cast<double>();
+            square += p.cast<double>() * p.cast<double>().transpose();
+        }
+        /// A wall, or a piece of one: hardly thicker than the readings' noise.
+        [[nodiscard]] bool flat() const {
+            const Vec3d middle = sum / static_cast<double>(count);
+            const Eigen::Matrix3d spread =
+                square / static_cast<double>(count) - middle * middle.transpose();
+            const double thickness = std::sqrt(std::max(
+                0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()[0]));
+            return thickness < 0.008 + 1.5 * depth_sigma(-static_cast<float>(middle.z()));
+        }
         [[nodiscard]] float size() const { return box.isEmpty() ? 0.0f : box.sizes().maxCoeff(); }
     };
     std::vector<Piece> all;
@@ -38,8 +57,7 @@ Pieces pieces_of(const Picture& picture, const std::vector<Vec3f>& points,
         while (!open.empty()) {
             const std::uint32_t at = open.back();
             open.pop_back();
-            ++piece.count;
-            piece.box.extend(points[at]);
+            piece.add(points[at]);
             const int x = static_cast<int>(at) % w, y = static_cast<int>(at) / w;
             const auto reach = [&](int u, int v) {
                 if (u < 0 || v < 0 || u >= w || v >= h) return;
@@ -61,7 +79,9 @@ std::int32_t main_piece(const Pieces& pieces) {
     std::int32_t best = -1;
     for (std::size_t i = 0; i < pieces.all.size(); ++i) {
         const auto& piece = pieces.all[i];
-        if (piece.count < kFewest || piece.size() > kLargest_m || piece.size() < kLeast_m) continue;
+        if (piece.count < kFewest || piece.size() > kLargest_m || piece.size() < kLeast_m ||
+            piece.flat())
+            continue;
         if (best < 0 || piece.count > pieces.all[static_cast<std::size_t>(best)].count)
             best = static_cast<std::int32_t>(i);
     }
