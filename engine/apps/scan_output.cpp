@@ -31,13 +31,12 @@ void check_folder(const fs::path& file, const char* option) {
 /// At most `triangles`, and how far the full surface is from it.
 ColoredMesh decimated(const ColoredMesh& full, std::size_t triangles,
                       nlohmann::ordered_json& report) {
-    // A surface with handles has more triangles for its vertices than a ball.
-    std::size_t vertices = triangles / 2 + 2;
-    geometry::Decimation kept = geometry::decimate(full.mesh, vertices);
-    for (int round = 0; round < 3 && kept.triangles.size() > triangles; ++round) {
-        vertices -= (kept.triangles.size() - triangles + 1) / 2;
-        kept = geometry::decimate(full.mesh, vertices);
-    }
+    // Triangles less twice the vertices: -4 for a ball, more with handles; collapses keep it.
+    const auto excess = static_cast<std::ptrdiff_t>(full.mesh.triangles.size()) -
+                        2 * static_cast<std::ptrdiff_t>(full.mesh.positions.size());
+    const std::ptrdiff_t vertices = (static_cast<std::ptrdiff_t>(triangles) - excess) / 2;
+    const geometry::Decimation kept = geometry::decimate(
+        full.mesh, static_cast<std::size_t>(std::max<std::ptrdiff_t>(vertices, 4)));
     ColoredMesh out;
     out.mesh.triangles = kept.triangles;
     for (const std::uint32_t v : kept.vertices) {
