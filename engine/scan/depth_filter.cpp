@@ -232,6 +232,17 @@ DepthView filtered_view(const Picture& picture, std::span<const std::uint8_t> su
     return out;
 }
 
+double roughness(const DepthView& view) {
+    double square = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < view.depth.size(); ++i) {
+        if (view.weight[i] <= 0.0f) continue;
+        const double off = (view.raw[i] - view.smoothed[i]) / depth_sigma(view.raw[i]);
+        square += off * off;
+        count += 1.0;
+    }
+    return count > 0.0 ? std::sqrt(square / count) : 0.0;
+}
+
 void take_off_bias(DepthView& view, std::span<const float> predicted,
                    const FilterOptions& options) {
     if (predicted.size() != view.depth.size())

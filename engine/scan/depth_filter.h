@@ -40,6 +40,9 @@ struct Picture {
 [[nodiscard]] DepthView filtered_view(const Picture& picture, std::span<const std::uint8_t> subject,
                                       const FilterOptions& options, const RowLoop& rows);
 
+/// How much rougher the readings are than `depth_sigma` has it: rms of what smoothing took off.
+[[nodiscard]] double roughness(const DepthView& view);
+
 /// Smoothing takes bends off: what it takes off a surface that is nearly the true one, seen from
 /// the same place, is put back. `predicted` (pixels): depth of that surface, 0 or NaN where there
 /// is none.

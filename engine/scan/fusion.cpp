@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kTrackingVoxel_m = 0.01f, kTrackingTruncation_m = 0.04f;
 constexpr double kLeastOverlap = 0.5; // of a view that fits
-constexpr double kMostRms_m = 0.008;
+constexpr double kMostRms_m = 0.015;
 
 Vec3f middle_of(const DepthView& view) {
     Vec3d sum = Vec3d::Zero();
@@ -240,6 +240,10 @@ void RigidFusion::take_off_bias() {
 FusedSurface RigidFusion::finish(const std::optional<geometry::Plane>& floor,
                                  const std::function<void(double)>& progress) {
     if (fed_ == 0) throw Error("no frame shows anything to scan");
+    if (views_.size() < 2 && report_.lost_frames > 0)
+        throw Error("none of the " + std::to_string(report_.lost_frames) +
+                    " frames after the first fits it: turn or move more slowly, and let what is "
+                    "scanned keep still");
     if (views_.size() < 2)
         throw Error("a single view shows one side only: move the camera around what is to be "
                     "scanned, or turn that slowly");

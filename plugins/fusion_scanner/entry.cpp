@@ -33,6 +33,9 @@ class FusionScanner {
                        "Pixels beside a jump of depth or a shadow that are dropped", 0, 8, 2},
         sdk::Parameter{"joint_bilateral", TOILE_PARAMETER_SWITCH, "1",
                        "Smooth depth up to edges of depth and colour", 0, 1, 1},
+        sdk::Parameter{"smoothing_radius", TOILE_PARAMETER_INTEGER, "1",
+                       "Pixels that are smoothed over; 0: 3, or 6 where readings are rough", 0, 10,
+                       0},
         sdk::Parameter{"averaged_frames", TOILE_PARAMETER_INTEGER, "1",
                        "Frames in a row of which one is made, for what stands still that long", 1,
                        30, 1},
@@ -149,12 +152,14 @@ class FusionScanner {
         out.filter.flying_pixels = values_[0] != 0.0;
         out.filter.edge_pixels = static_cast<int>(values_[1]);
         out.filter.joint_bilateral = values_[2] != 0.0;
-        out.averaged_frames = static_cast<int>(values_[3]);
+        out.choose_radius = values_[3] == 0.0;
+        if (!out.choose_radius) out.filter.radius = static_cast<int>(values_[3]);
+        out.averaged_frames = static_cast<int>(values_[4]);
         out.fusion.filter = out.filter;
-        out.fusion.close_loop = values_[4] != 0.0;
-        out.fusion.refine_jointly = values_[5] != 0.0;
-        out.fusion.bias_rounds = static_cast<int>(values_[6]);
-        out.fusion.voxel_m = static_cast<float>(values_[7]);
+        out.fusion.close_loop = values_[5] != 0.0;
+        out.fusion.refine_jointly = values_[6] != 0.0;
+        out.fusion.bias_rounds = static_cast<int>(values_[7]);
+        out.fusion.voxel_m = static_cast<float>(values_[8]);
         return out;
     }
 

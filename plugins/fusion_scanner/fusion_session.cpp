@@ -6,9 +6,15 @@
 #include <algorithm>
 
 namespace toile::fusion_scanner {
+namespace {
+
+constexpr double kRough = 1.22; // times what a Kinect's readings are off a smooth surface
+constexpr int kWideRadius = 6;  // pixels
+
+} // namespace
 
 FusionSession::FusionSession(SessionCamera camera, const SessionOptions& options, RowLoop rows)
-    : camera_(std::move(camera)), options_(options), rows_(rows), fusion_(options.fusion, rows) {
+    : camera_(std::move(camera)), options_(options), rows_(std::move(rows)) {
     imaging::check_intrinsics(camera_.intrinsics);
 }
 
@@ -37,8 +43,16 @@ void FusionSession::use(std::span<const float> depth, std::span<const scan::Rgba
         return;
     }
     scan::DepthView view = scan::filtered_view(picture, subject.mask, options_.filter, rows_);
-    if (fusion_.count() == 0) floor_ = subject.floor;
-    fusion_.add(std::move(view));
+    if (!fusion_) {
+        if (options_.choose_radius && scan::roughness(view) > kRough) {
+            options_.filter.radius = kWideRadius;
+            view = scan::filtered_view(picture, subject.mask, options_.filter, rows_);
+        }
+        options_.fusion.filter = options_.filter;
+        fusion_ = std::make_unique<scan::RigidFusion>(options_.fusion, rows_);
+        floor_ = subject.floor;
+    }
+    fusion_->add(std::move(view));
 }
 
 Eigen::Isometry3d FusionSession::upright(const geometry::TriangleMesh& mesh) const {
@@ -55,10 +69,10 @@ Eigen::Isometry3d FusionSession::upright(const geometry::TriangleMesh& mesh) con
 
 SessionResult FusionSession::finish(const std::function<void(double)>& progress) {
     if (fed_ == 0) throw Error("no frame was fed");
-    if (fusion_.count() == 0)
+    if (!fusion_)
         throw Error("nobody is in view in any of " + std::to_string(fed_) + " frames" +
                     (trouble_.empty() ? "" : ": " + trouble_));
-    scan::FusedSurface fused = fusion_.finish(floor_, progress);
+    scan::FusedSurface fused = fusion_->finish(floor_, progress);
     const Eigen::Isometry3f world = upright(fused.mesh).cast<float>();
     for (Vec3f& p : fused.mesh.positions)
         p = world * p;
@@ -72,6 +86,7 @@ SessionResult FusionSession::finish(const std::function<void(double)>& progress)
         {"frames_lost", r.lost_frames},
         {"turn_deg", r.turn_rad * 180.0 / 3.14159265358979},
         {"loop", {{"closed", r.loop_closed}, {"gap_m", r.loop_gap_m}, {"error_m", r.loop_error_m}}},
+        {"smoothing_radius", options_.filter.radius},
         {"views_rms_m", r.joint_rms_m},
         {"readings_rms_m", r.surface_rms_m},
         {"floor", floor_.has_value()},

@@ -11,7 +11,8 @@ namespace toile::fusion_scanner {
 struct SessionOptions {
     scan::FilterOptions filter;
     scan::FusionOptions fusion;
-    int averaged_frames = 1; ///< of so many frames in a row one picture is made
+    bool choose_radius = true; ///< rougher readings are smoothed more widely
+    int averaged_frames = 1;   ///< of so many frames in a row one picture is made
 };
 
 struct SessionCamera {
@@ -43,9 +44,9 @@ class FusionSession {
     SessionCamera camera_;
     SessionOptions options_;
     RowLoop rows_;
-    scan::RigidFusion fusion_;
-    std::vector<std::vector<float>> waiting_; ///< to be averaged
-    std::optional<geometry::Plane> floor_;    ///< in the first camera's coordinates
+    std::unique_ptr<scan::RigidFusion> fusion_; ///< once the first frame shows something
+    std::vector<std::vector<float>> waiting_;   ///< to be averaged
+    std::optional<geometry::Plane> floor_;      ///< in the first camera's coordinates
     std::size_t fed_ = 0, empty_ = 0;
     std::string trouble_; ///< of the last frame that showed nothing
 };

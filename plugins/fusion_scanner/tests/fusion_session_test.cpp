@@ -87,6 +87,17 @@ TEST(FusionSession, AveragedFramesHaveLessNoise) {
     EXPECT_LT(readings_rms(4), 0.65 * readings_rms(1));
 }
 
+TEST(FusionSession, RoughReadingsAreSmoothedMoreWidely) {
+    const auto radius = [](float noise_m) {
+        FusionSession session = session_of();
+        for (int k = 0; k < 3; ++k)
+            session.add(picture(0.1 * k, noise_m, static_cast<std::uint64_t>(k) + 1), {});
+        return session.finish([](double) {}).report.at("smoothing_radius").get<int>();
+    };
+    EXPECT_EQ(radius(0.001f), 3);
+    EXPECT_EQ(radius(0.006f), 6);
+}
+
 TEST(FusionSession, ProgressMayStopIt) {
     struct Stop {};
     FusionSession session = session_of();
