@@ -129,7 +129,7 @@ void close_box(NodeField& field, float far) {
 
 /// Guessed nodes near a change of sign, rounds of averaging among them.
 void diffuse(NodeField& field, const std::vector<std::uint8_t>& guessed, const RowLoop& rows) {
-    constexpr int kRounds = 24;
+    constexpr int kRounds = 6;
     constexpr std::int64_t kReach = 4;
     const std::array<std::int64_t, 3> step{1, field.size[0], field.size[0] * field.size[1]};
     std::vector<std::int64_t> band;

@@ -39,13 +39,15 @@ double import_ms(const fs::path& file) {
     return best;
 }
 
-void level(const assets::ColoredMesh& full, const assets::ColoredMesh& mesh, const fs::path& folder) {
+void level(const assets::ColoredMesh& full, const assets::ColoredMesh& mesh,
+           const fs::path& folder) {
     const auto off = evaluation::deviation(full.mesh.positions, mesh.mesh);
     std::printf("| %zu |", mesh.mesh.triangles.size());
     for (const char* kind : {".ply", ".glb"}) {
         const fs::path file = folder / (std::string("level") + kind);
         assets::save_scene(assets::scene_of(mesh, "scan"), file);
-        std::printf(" %.2f | %.0f |", 1e-6 * static_cast<double>(fs::file_size(file)), import_ms(file));
+        std::printf(" %.2f | %.0f |", 1e-6 * static_cast<double>(fs::file_size(file)),
+                    import_ms(file));
     }
     std::printf(" %.2f | %.2f | %.1f |\n", 1e3 * off.mean_m, 1e3 * off.p95_m, 1e3 * off.most_m);
 }
@@ -58,7 +60,8 @@ int main(int argc, char** argv) {
         const fs::path folder = fs::temp_directory_path() / "toile_scan_levels";
         fs::create_directories(folder);
         assets::ColoredMesh mesh = assets::load_colored_mesh(argv[1]);
-        std::puts("| triangles | .ply MB | import ms | .glb MB | import ms | error mean mm | 95 % | most |\n"
+        std::puts("| triangles | .ply MB | import ms | .glb MB | import ms | error mean mm | 95 % "
+                  "| most |\n"
                   "|---|---|---|---|---|---|---|---|");
         const assets::ColoredMesh full = mesh;
         level(full, full, folder);
