@@ -18,6 +18,7 @@ void add_plugin_commands(CLI::App& app, const GlobalOptions& options);
 void add_record_commands(CLI::App& app, const GlobalOptions& options);
 void add_track_commands(CLI::App& app, const GlobalOptions& options);
 void add_fit_commands(CLI::App& app, const GlobalOptions& options);
+void add_scan_commands(CLI::App& app, const GlobalOptions& options);
 void add_dress_commands(CLI::App& app, const GlobalOptions& options);
 void add_measure_commands(CLI::App& app, const GlobalOptions& options);
 void add_catalogue_commands(CLI::App& app, const GlobalOptions& options);

@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
     toile::apps::add_record_commands(app, options);
     toile::apps::add_track_commands(app, options);
     toile::apps::add_fit_commands(app, options);
+    toile::apps::add_scan_commands(app, options);
     toile::apps::add_dress_commands(app, options);
     toile::apps::add_measure_commands(app, options);
     toile::apps::add_catalogue_commands(app, options);

@@ -14,28 +14,11 @@ namespace {
 
 constexpr std::size_t kMaxNodes = 200'000'000;
 
-/// Node values of a box, NaN where not sampled.
-struct Grid {
-    Vec3f origin;
-    float spacing;
-    std::array<std::int64_t, 3> size;
-    std::vector<float> values;
-
-    [[nodiscard]] std::int64_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
-        return (z * size[1] + y) * size[0] + x;
-    }
-    [[nodiscard]] Vec3f position(std::int64_t index) const {
-        const std::int64_t x = index % size[0], yz = index / size[0];
-        return origin + spacing * Vec3f(static_cast<float>(x), static_cast<float>(yz % size[1]),
-                                        static_cast<float>(yz / size[1]));
-    }
-};
-
-Grid make_grid(const TriangleMesh& near, float spacing, float reach) {
+NodeField make_grid(const TriangleMesh& near, float spacing, float reach) {
     Eigen::AlignedBox3f box;
     for (const auto& p : near.positions)
         box.extend(p);
-    Grid grid;
+    NodeField grid;
     grid.spacing = spacing;
     const Vec3f margin = Vec3f::Constant(reach + 2.0f * spacing);
     for (int k = 0; k < 3; ++k) // nodes at multiples of the spacing, whatever the mesh
@@ -52,7 +35,7 @@ Grid make_grid(const TriangleMesh& near, float spacing, float reach) {
 }
 
 /// Marks, then samples, the nodes in every triangle's box grown by `reach`.
-void sample(Grid& grid, const TriangleMesh& near,
+void sample(NodeField& grid, const TriangleMesh& near,
             const std::function<float(const Vec3f&)>& reach_at,
             const std::function<float(const Vec3f&)>& value) {
     std::vector<bool> marked(grid.values.size());
@@ -76,18 +59,14 @@ void sample(Grid& grid, const TriangleMesh& near,
                 for (auto x = low[0]; x <= high[0]; ++x)
                     marked[static_cast<std::size_t>(grid.index(x, y, z))] = true;
     }
-    const float least = 1e-5f * grid.spacing; // a node exactly on the surface would pinch it
-    for (std::size_t i = 0; i < marked.size(); ++i) {
-        if (!marked[i]) continue;
-        const float v = value(grid.position(static_cast<std::int64_t>(i)));
-        grid.values[i] = std::abs(v) < least ? least : v;
-    }
+    for (std::size_t i = 0; i < marked.size(); ++i)
+        if (marked[i]) grid.values[i] = value(grid.position(static_cast<std::int64_t>(i)));
 }
 
 /// Collects the triangles of one tetrahedron after another, welding along grid edges.
 class Marcher {
   public:
-    explicit Marcher(const Grid& grid) : grid_(grid) {}
+    explicit Marcher(const NodeField& grid) : grid_(grid) {}
 
     /// `corners`: node indices of a tetrahedron, positively oriented when `even`.
     void tetrahedron(std::array<std::int64_t, 4> corners, bool even) {
@@ -117,7 +96,9 @@ class Marcher {
 
   private:
     [[nodiscard]] float value(std::int64_t node) const {
-        return grid_.values[static_cast<std::size_t>(node)];
+        const float v = grid_.values[static_cast<std::size_t>(node)];
+        const float least = 1e-5f * grid_.spacing; // a node exactly on the surface would pinch it
+        return std::abs(v) < least ? least : v;
     }
     void add(Triangle t, bool even) {
         if (!even) std::swap(t[1], t[2]);
@@ -136,7 +117,7 @@ class Marcher {
         return found->second;
     }
 
-    const Grid& grid_;
+    const NodeField& grid_;
     std::unordered_map<std::uint64_t, std::uint32_t> cuts_; // looked up only, never walked
 };
 
@@ -160,8 +141,12 @@ TriangleMesh level_surface(const TriangleMesh& near, float spacing,
     float farthest = 0.0f;
     for (const auto& p : near.positions)
         farthest = std::max(farthest, reach(p));
-    Grid grid = make_grid(near, spacing, farthest);
+    NodeField grid = make_grid(near, spacing, farthest);
     sample(grid, near, reach, value);
+    return level_surface(grid);
+}
+
+TriangleMesh level_surface(const NodeField& grid) {
     Marcher marcher(grid);
     for (std::int64_t z = 0; z + 1 < grid.size[2]; ++z)
         for (std::int64_t y = 0; y + 1 < grid.size[1]; ++y)
@@ -174,7 +159,7 @@ TriangleMesh level_surface(const TriangleMesh& near, float spacing,
                                           z + static_cast<std::int64_t>(k >> 2));
                     const float v = grid.values[static_cast<std::size_t>(nodes[k])];
                     known = !std::isnan(v);
-                    (v < 0.0f ? negative : positive) = true;
+                    (v < -1e-5f * grid.spacing ? negative : positive) = true;
                 }
                 if (!known || !negative || !positive) continue;
                 for (const auto& t : kTetrahedra)

@@ -7,6 +7,27 @@
 
 namespace toile::geometry {
 
+/// Values at the nodes of a box, x fastest; NaN where not known.
+struct NodeField {
+    Vec3f origin = Vec3f::Zero();
+    float spacing = 0.0f; ///< metres
+    std::array<std::int64_t, 3> size{};
+    std::vector<float> values; ///< (size[0] * size[1] * size[2])
+
+    [[nodiscard]] std::int64_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
+        return (z * size[1] + y) * size[0] + x;
+    }
+    [[nodiscard]] Vec3f position(std::int64_t index) const {
+        const std::int64_t x = index % size[0], yz = index / size[0];
+        return origin + spacing * Vec3f(static_cast<float>(x), static_cast<float>(yz % size[1]),
+                                        static_cast<float>(yz / size[1]));
+    }
+};
+
+/// Zero set of a field by marching tetrahedra, oriented towards positive values; pieces are closed
+/// and manifold where all nodes around them are known. Nodes at zero count as just above it.
+[[nodiscard]] TriangleMesh level_surface(const NodeField& field);
+
 /// Zero set of `value`, sampled on a grid of `spacing` (metres) at the nodes within `reach(p)` of
 /// the triangles of `near` (p: their corners); elsewhere the value counts as positive. Marching
 /// tetrahedra: every piece is closed and manifold, oriented towards positive values.

@@ -70,7 +70,7 @@ std::span<const ContractCase> contract_cases() {
         std::vector<ContractCase> out;
         for (const auto part :
              {life_cases(), skinning_cases(), garment_cases(), cloth_cases(), body_source_cases(),
-              sensor_cases(), tool_cases(), resizer_cases(), draft_cases()})
+              sensor_cases(), tool_cases(), resizer_cases(), scanner_cases()})
             out.insert(out.end(), part.begin(), part.end());
         return out;
     }();

@@ -122,6 +122,6 @@ class Longer {
 [[nodiscard]] std::span<const ContractCase> sensor_cases();
 [[nodiscard]] std::span<const ContractCase> tool_cases();
 [[nodiscard]] std::span<const ContractCase> resizer_cases();
-[[nodiscard]] std::span<const ContractCase> draft_cases();
+[[nodiscard]] std::span<const ContractCase> scanner_cases();
 
 } // namespace toile::host

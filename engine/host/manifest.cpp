@@ -100,6 +100,21 @@ bool is_command(const std::string& text) {
     return word && words <= 3 && text.size() <= 64;
 }
 
+// `toile scan --method` names it; the engine knows none.
+void read_method(JsonObject& root, Manifest& out) {
+    const bool scanner = out.provides_kind(TOILE_SCANNER);
+    if (!root.has("method")) {
+        if (scanner)
+            throw root.error("method", std::string("must name what provides ") + TOILE_SCANNER);
+        return;
+    }
+    if (!scanner)
+        throw root.error("method", std::string("is for plugins that provide ") + TOILE_SCANNER);
+    out.method = root.text("method");
+    if (!is_command(out.method) || out.method.find(' ') != std::string::npos)
+        throw root.error("method", "'" + out.method + "' must be one word of a-z and -");
+}
+
 // The help lists a tool without opening its library.
 void read_command(JsonObject& root, Manifest& out) {
     const bool tool = out.provides_kind(TOILE_TOOL);
@@ -143,6 +158,7 @@ void read_values(JsonObject& root, Manifest& out) {
     out.licence = root.text_or("licence", "");
     check_kinds(root, out);
     read_command(root, out);
+    read_method(root, out);
 }
 
 // The text of a JsonError without the file in front, which PluginRefused adds again.
@@ -178,7 +194,7 @@ Manifest read_manifest(const std::filesystem::path& file) {
         for (const std::string& key : root.keys()) {
             constexpr const char* known[] = {"id",       "version", "abi",     "library",
                                              "provides", "needs",   "schemes", "priority",
-                                             "licence",  "sample",  "command"};
+                                             "licence",  "sample",  "command", "method"};
             if (std::none_of(std::begin(known), std::end(known),
                              [&](const char* k) { return key == k; }))
                 throw PluginRefused(Refusal::manifest_unknown_key, name,

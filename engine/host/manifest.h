@@ -22,6 +22,7 @@ struct Manifest {
     std::vector<std::string> schemes;  ///< source URI schemes: "kinect-log"
     int priority = 0;                  ///< the highest of a kind serves it by default
     std::filesystem::path sample;      ///< a short recording beside the manifest, or empty
+    std::string method;                ///< of a scanner: "fusion"; else empty
     std::string command;               ///< of a tool: "avatar train-parts"; else empty
     std::string command_summary;       ///< one line for --help
     std::string licence;               ///< SPDX expression, or empty

@@ -27,6 +27,8 @@ class MeshSink {
     MeshSink& operator=(const MeshSink&) = delete;
 
     [[nodiscard]] toile_mesh_sink* handle() noexcept { return &sink_; }
+    /// As begun and not yet taken; 0 before.
+    [[nodiscard]] std::size_t vertex_count() const noexcept { return mesh_.positions.size(); }
     /// What was committed and is whole: finite, indices in range. \throw Error saying what is not
     [[nodiscard]] SunkMesh take();
 

@@ -1,8 +1,7 @@
-// Kind toile.scanner/1 (draft) for a class P with
-//     void begin(const SizedArray<const toile_stream>& streams);          // [worker]
-//     void feed(const SizedArray<const toile_frame>& frames);                                  //
-//     [worker] void finish(toile_scan_sink& sink, Job job);                                     //
-//     [worker]
+// Kind toile.scanner/1 for a class P with
+//     void begin(const SizedArray<const toile_stream>& streams);  // [worker]
+//     void feed(const SizedArray<const toile_frame>& frames);     // [worker]
+//     void finish(toile_scan_sink& sink, Job job);                // [worker]
 #pragma once
 
 #include "abi/scanner.h"
@@ -19,6 +18,7 @@ struct Scanner {
     static toile_status begin(toile_instance* instance, const toile_stream* streams,
                               std::uint32_t count) noexcept {
         return guarded<P>(instance, [&](P& p) {
+            if (count == 0) throw bad_argument("streams: no camera");
             return p.begin(SizedArray<const toile_stream>(streams, count, "streams"));
         });
     }
@@ -33,7 +33,7 @@ struct Scanner {
     static toile_status finish(toile_instance* instance, toile_scan_sink* sink,
                                toile_job* job) noexcept {
         return guarded<P>(instance, [&](P& p) {
-            if (sink == nullptr) throw bad_argument("sink: null");
+            if (sink == nullptr || sink->mesh == nullptr) throw bad_argument("sink: null");
             return p.finish(*sink, Job(job));
         });
     }

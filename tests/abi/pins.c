@@ -354,13 +354,14 @@ AT(toile_resizer, size, 0);
 AT(toile_resizer, reserved, 4);
 AT(toile_resizer, resize, 8);
 
-SIZE(toile_scan_sink, 40);
+SIZE(toile_scan_sink, 48);
 AT(toile_scan_sink, size, 0);
 AT(toile_scan_sink, reserved, 4);
 AT(toile_scan_sink, mesh, 8);
 AT(toile_scan_sink, sink_data, 16);
 AT(toile_scan_sink, texture, 24);
 AT(toile_scan_sink, skin, 32);
+AT(toile_scan_sink, report, 40);
 
 SIZE(toile_scanner, 32);
 AT(toile_scanner, size, 0);

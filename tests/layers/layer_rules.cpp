@@ -24,6 +24,7 @@ const std::map<std::string, Names> kArrows = {
     {"assets", {"geometry", "imaging"}},
     {"body", {"assets"}},
     {"cloth", {"geometry"}},
+    {"scan", {"geometry", "imaging"}},
     {"boundary", {"sdk", "body", "cloth"}},
     {"garment", {"body"}},
     {"host", {"abi", "core"}},
@@ -33,8 +34,8 @@ const std::map<std::string, Names> kArrows = {
 };
 
 // A plugin: the boundary, and the engine's algorithms up to garment.
-const Names kPluginLayers = {"abi",    "sdk",  "core",  "geometry", "imaging",
-                             "assets", "body", "cloth", "boundary", "garment"};
+const Names kPluginLayers = {"abi",  "sdk",   "core", "geometry", "imaging", "assets",
+                             "body", "cloth", "scan", "boundary", "garment"};
 
 struct Library {
     const char* name;
@@ -45,8 +46,8 @@ struct Library {
 };
 
 // Everything that stands on core sees Eigen, JSON and the log through it.
-const Names kEverywhere = {"core",    "geometry", "imaging",  "assets", "body", "cloth",
-                           "garment", "host",     "pipeline", "render", "apps"};
+const Names kEverywhere = {"core", "geometry", "imaging", "assets",   "body",   "cloth",
+                           "scan", "garment",  "host",    "pipeline", "render", "apps"};
 
 const std::vector<Library> kLibraries = {
     {"Eigen", R"(^Eigen/.*|^unsupported/Eigen/.*)", "^Eigen3::.*", kEverywhere, true},

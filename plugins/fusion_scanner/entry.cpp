@@ -1,0 +1,181 @@
+// Kind toile.scanner/1: one camera, one rigid subject, places not known.
+#include "core/error.h"
+#include "fusion_scanner/fusion_session.h"
+#include "sdk/parameters.h"
+#include "sdk/plugin.h"
+#include "sdk/scanner.h"
+#include "sdk/thread_pool.h"
+#include "sdk/views.h"
+
+#include <memory>
+
+namespace {
+
+namespace sdk = toile::sdk;
+namespace fusion = toile::fusion_scanner;
+using toile::scan::Rgba8;
+
+constexpr std::uint32_t kMostFrames = 1000;
+
+class FusionScanner {
+  public:
+    static constexpr sdk::Info info{.id = "toile.fusion_scanner",
+                                    .name = "A rigid subject from one camera, by fusion",
+                                    .version = "0.1.0",
+                                    .vendor = "Toile"};
+    using Kinds = sdk::Kinds<sdk::Scanner>;
+    using Extensions = sdk::Kinds<sdk::Parameters>;
+
+    static constexpr std::array parameters{
+        sdk::Parameter{"flying_pixels", TOILE_PARAMETER_SWITCH, "1",
+                       "Drop readings that have no neighbours at their depth", 0, 1, 1},
+        sdk::Parameter{"edge_pixels", TOILE_PARAMETER_INTEGER, "1",
+                       "Pixels beside a jump of depth or a shadow that are dropped", 0, 8, 2},
+        sdk::Parameter{"joint_bilateral", TOILE_PARAMETER_SWITCH, "1",
+                       "Smooth depth up to edges of depth and colour", 0, 1, 1},
+        sdk::Parameter{"smoothing_radius", TOILE_PARAMETER_INTEGER, "1",
+                       "Pixels that are smoothed over; 0: 3, or 6 where readings are rough", 0, 10,
+                       0},
+        sdk::Parameter{"averaged_frames", TOILE_PARAMETER_INTEGER, "1",
+                       "Frames in a row of which one is made, for what stands still that long", 1,
+                       30, 1},
+        sdk::Parameter{"close_loop", TOILE_PARAMETER_SWITCH, "1",
+                       "Spread what is missing when the turn comes round", 0, 1, 1},
+        sdk::Parameter{"refine_jointly", TOILE_PARAMETER_SWITCH, "1",
+                       "Place all views at once after the loop", 0, 1, 1},
+        sdk::Parameter{"bias_rounds", TOILE_PARAMETER_INTEGER, "1",
+                       "Rounds of putting back what smoothing takes off bends", 0, 5, 2},
+        sdk::Parameter{"voxel_m", TOILE_PARAMETER_REAL, "m", "Detail of the surface", 0.003, 0.02,
+                       0.005},
+    };
+    double& parameter(std::size_t index) { return values_.at(index); }
+
+    explicit FusionScanner(sdk::Host host) : pool_(host) {
+        for (std::size_t i = 0; i < values_.size(); ++i)
+            values_[i] = parameters[i].default_value;
+    }
+
+    void begin(const sdk::SizedArray<const toile_stream>& streams) {
+        session_.reset();
+        if (streams.size() > 1)
+            throw sdk::Failure(TOILE_E_UNSUPPORTED, "fusion takes one camera; " +
+                                                        std::to_string(streams.size()) +
+                                                        " were named");
+        try {
+            session_ =
+                std::make_unique<fusion::FusionSession>(camera_of(streams[0]), options(), rows());
+        } catch (const toile::Error& e) {
+            throw sdk::bad_argument(e.what());
+        }
+        camera_ = streams[0].camera;
+        pixels_ = std::size_t{streams[0].depth.width} * streams[0].depth.height;
+        fed_ = 0;
+    }
+
+    void feed(const sdk::SizedArray<const toile_frame>& frames) {
+        if (!session_) throw sdk::bad_argument("feed: called before begin");
+        for (std::uint32_t i = 0; i < frames.size(); ++i) {
+            const toile_frame& frame = frames[i];
+            if (frame.camera != camera_)
+                throw sdk::bad_argument("frames: a camera that was not announced");
+            if (fed_++ >= kMostFrames)
+                throw sdk::Failure(TOILE_E_CAPACITY, "more than 1000 frames: take fewer a second");
+            const auto depth = sdk::span_of<float>(frame.depth_m, "frame.depth_m", pixels_);
+            const auto color = sdk::span_of<Rgba8>(frame.color, "frame.color");
+            if (!color.empty() && color.size() != pixels_)
+                throw sdk::bad_argument("frame.color: not of the depth picture's size");
+            try {
+                session_->add(depth, color);
+            } catch (const toile::Error& e) {
+                throw sdk::Failure(TOILE_E_NUMERIC, e.what());
+            }
+        }
+    }
+
+    void finish(toile_scan_sink& sink, sdk::Job job) {
+        if (!session_) throw sdk::bad_argument("finish: called before begin");
+        const auto session = std::move(session_); // once
+        fusion::SessionResult result;
+        try {
+            result = session->finish([&](double share) { job.progress(share, "fusing"); });
+        } catch (const toile::Error& e) {
+            throw sdk::Failure(TOILE_E_NUMERIC, e.what());
+        }
+        give(result, *sink.mesh);
+        if (sink.report != nullptr) check(sink.report(&sink, result.report.dump().c_str()));
+        job.progress(1.0);
+    }
+
+  private:
+    static void check(toile_status status) {
+        if (status < 0) throw sdk::Failure(status, "the sink refused the surface");
+    }
+
+    static void give(const fusion::SessionResult& result, toile_mesh_sink& sink) {
+        const auto& mesh = result.mesh;
+        toile_mesh_buffers out{};
+        out.size = sizeof(out);
+        check(sink.begin(&sink, static_cast<std::uint32_t>(mesh.positions.size()),
+                         static_cast<std::uint32_t>(mesh.triangles.size()), &out));
+        const auto positions = sdk::span_of<sdk::Float3>(out.positions, "sink.positions");
+        const auto normals = sdk::span_of<sdk::Float3>(out.normals, "sink.normals");
+        for (std::size_t v = 0; v < positions.size(); ++v) {
+            std::copy_n(mesh.positions[v].data(), 3, positions[v].data());
+            std::copy_n(mesh.normals[v].data(), 3, normals[v].data());
+        }
+        const auto colors = sdk::span_of<Rgba8>(out.colors, "sink.colors");
+        std::copy(result.colors.begin(), result.colors.end(), colors.begin());
+        const auto corners = sdk::span_of<sdk::Triangle>(out.triangles, "sink.triangles");
+        std::copy(mesh.triangles.begin(), mesh.triangles.end(), corners.begin());
+        check(sink.commit(&sink));
+    }
+
+    static fusion::SessionCamera camera_of(const toile_stream& stream) {
+        fusion::SessionCamera out;
+        out.intrinsics.width = static_cast<int>(stream.depth.width);
+        out.intrinsics.height = static_cast<int>(stream.depth.height);
+        out.intrinsics.fx = stream.depth.fx;
+        out.intrinsics.fy = stream.depth.fy;
+        out.intrinsics.cx = stream.depth.cx;
+        out.intrinsics.cy = stream.depth.cy;
+        std::copy_n(stream.depth.distortion, 8, out.intrinsics.distortion.begin());
+        if (stream.has_world != 0) {
+            Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+            std::copy_n(stream.world_from_camera, 16, place.matrix().data());
+            out.world_from_camera = place;
+        }
+        return out;
+    }
+
+    [[nodiscard]] fusion::SessionOptions options() const {
+        fusion::SessionOptions out;
+        out.filter.flying_pixels = values_[0] != 0.0;
+        out.filter.edge_pixels = static_cast<int>(values_[1]);
+        out.filter.joint_bilateral = values_[2] != 0.0;
+        out.choose_radius = values_[3] == 0.0;
+        if (!out.choose_radius) out.filter.radius = static_cast<int>(values_[3]);
+        out.averaged_frames = static_cast<int>(values_[4]);
+        out.fusion.filter = out.filter;
+        out.fusion.close_loop = values_[5] != 0.0;
+        out.fusion.refine_jointly = values_[6] != 0.0;
+        out.fusion.bias_rounds = static_cast<int>(values_[7]);
+        out.fusion.voxel_m = static_cast<float>(values_[8]);
+        return out;
+    }
+
+    [[nodiscard]] toile::RowLoop rows() const {
+        return [this](std::uint32_t count, std::uint32_t grain, const auto& work) {
+            pool_.parallel_for(count, grain, work);
+        };
+    }
+
+    sdk::ThreadPool pool_;
+    std::array<double, parameters.size()> values_{};
+    std::unique_ptr<fusion::FusionSession> session_;
+    std::uint32_t camera_ = 0, fed_ = 0;
+    std::size_t pixels_ = 0;
+};
+
+} // namespace
+
+TOILE_PLUGIN(fusion_scanner, FusionScanner)

@@ -1,0 +1,157 @@
+// toile scan: from pictures to a surface, a report, a rig that moves; and what it refuses.
+#include "assets/colored_mesh.h"
+#include "assets/files.h"
+#include "assets/skins.h"
+#include "body/skeleton.h"
+#include "body/surface_cache.h"
+#include "core/bytes.h"
+#include "core/json.h"
+#include "geometry/nearest_surface.h"
+#include "support/run_program.h"
+#include "support/temporary_folder.h"
+
+#include <algorithm>
+#include <gmock/gmock.h>
+
+namespace toile::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr const char* kTurn = R"({"schema": 1, "frames": 33,
+    "people": [{"body": {"avatar": "woman"}, "turntable_s": 1.0667}],
+    "scene": {"walls": [{"position": [0, 0, -1.5]}]},
+    "cameras": [{"name": "front", "mount": "upright", "position": [0, 1.1, 2.1], "look_at": [0, 0.88, 0]}]})";
+
+/// One recording for all tests.
+class ScanTest : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        write_text(*folder_ / "turn.json", kTurn);
+        const auto made = run_toile(
+            {"record", "--source", "simulated:" + path("turn.json"), "--out", path("turn")});
+        ASSERT_EQ(made.status, 0) << made.output;
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+
+    static std::string path(const std::string& name) { return (*folder_ / name).string(); }
+
+    static ProgramResult scan(std::vector<std::string> more) {
+        std::vector<std::string> words = {"scan", "--source", "capture:" + path("turn")};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_toile(words);
+    }
+    static geometry::TriangleMesh truth() {
+        const body::SurfaceCache cache = body::open_surface_cache(*folder_ / "turn" / "truth");
+        geometry::TriangleMesh out = assets::colored_mesh_of(cache.scene).mesh;
+        std::vector<std::vector<Vec3f>> positions;
+        cache.load(0, positions);
+        out.positions.clear();
+        for (const auto& part : positions)
+            out.positions.insert(out.positions.end(), part.begin(), part.end());
+        return out;
+    }
+
+    static inline std::unique_ptr<TemporaryFolder> folder_;
+};
+
+TEST_F(ScanTest, ATurningWomanComesOutAsSheStoodFirst) {
+    const auto done = scan({"--out", path("woman.ply"), "--report", path("woman.json"),
+                            "--triangles", "40000", "--threads", "2"});
+    ASSERT_EQ(done.status, 0) << done.output;
+    const auto report = parse_json_file(path("woman.json"));
+    EXPECT_EQ(report.at("method"), "fusion");
+    EXPECT_EQ(report.at("frames"), 33);
+    EXPECT_TRUE(report.at("loop").at("closed"));
+    EXPECT_LT(report.at("loop").at("error_m"), 0.002);
+    EXPECT_LE(report.at("triangles"), 40000);
+    const auto scanned = assets::load_colored_mesh(path("woman.ply"));
+    ASSERT_EQ(scanned.colors.size(), scanned.mesh.positions.size());
+    const auto topology = geometry::check_topology(scanned.mesh.positions, scanned.mesh.triangles);
+    EXPECT_TRUE(topology.closed()) << topology.text();
+    const auto woman = truth();
+    const geometry::NearestSurface surface(woman.positions, woman.triangles);
+    std::vector<float> off;
+    double mean = 0.0;
+    for (const Vec3f& p : scanned.mesh.positions) {
+        off.push_back(surface.nearest(p).distance);
+        mean += off.back() / static_cast<double>(scanned.mesh.positions.size());
+    }
+    std::sort(off.begin(), off.end());
+    EXPECT_LT(mean, 0.0015);
+    EXPECT_LT(off[off.size() * 95 / 100], 0.005);
+}
+
+TEST_F(ScanTest, AnyNumberOfThreadsGivesTheSameFile) {
+    ASSERT_EQ(scan({"--out", path("one.ply"), "--threads", "1", "--frames", "12"}).status, 0);
+    ASSERT_EQ(scan({"--out", path("two.ply"), "--threads", "2", "--frames", "12"}).status, 0);
+    EXPECT_EQ(read_bytes(path("one.ply"), 1u << 28), read_bytes(path("two.ply"), 1u << 28));
+}
+
+TEST_F(ScanTest, ARiggedScanMovesWithoutTearing) {
+    const auto done = scan({"--out", path("rig.glb"), "--rig", "--triangles", "30000", "--motion",
+                            std::string(TOILE_SOURCE_DIR) + "/avatars/motions/walk.json"});
+    ASSERT_EQ(done.status, 0) << done.output;
+    assets::Scene scene = assets::load_scene(path("rig.glb"));
+    ASSERT_EQ(scene.skins.size(), 1u);
+    EXPECT_EQ(scene.skins[0].joints.size(), body::kJointCount);
+    ASSERT_EQ(scene.animations.size(), 1u);
+    const auto& primitive = scene.meshes.at(0).primitives.at(0);
+    // As it stands every vertex is where it is.
+    const auto still =
+        assets::skinned_positions(primitive, scene.skins[0], assets::node_transforms(scene));
+    for (std::size_t v = 0; v < still.size(); ++v)
+        ASSERT_LT((still[v] - primitive.positions[v]).norm(), 1e-4f);
+    // And at each tenth frame of the walk hardly any side is torn.
+    const auto& channels = scene.animations[0].channels;
+    for (std::size_t k = 0; k < channels.front().values.size(); k += 10) {
+        for (const assets::Channel& channel : channels) {
+            assets::Node& node = scene.nodes.at(static_cast<std::size_t>(channel.node));
+            const Vec4f& value = channel.values.at(k);
+            if (channel.path == assets::Channel::Path::rotation)
+                node.rotation = Quatf(value.w(), value.x(), value.y(), value.z());
+            else
+                node.translation = value.head<3>();
+        }
+        const auto moved =
+            assets::skinned_positions(primitive, scene.skins[0], assets::node_transforms(scene));
+        std::size_t torn = 0;
+        for (const Triangle& t : primitive.triangles)
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto a = t[i], b = t[(i + 1) % 3];
+                const float before = (primitive.positions[a] - primitive.positions[b]).norm();
+                torn += (moved[a] - moved[b]).norm() > 3.0f * before + 0.01f ? 1 : 0;
+            }
+        EXPECT_EQ(torn, 0u) << "frame " << k;
+    }
+}
+
+TEST_F(ScanTest, RefusesWhatCannotBeDone) {
+    const auto refused = [&](std::vector<std::string> words, int status, const char* text) {
+        const auto result = scan(std::move(words));
+        EXPECT_EQ(result.status, status) << result.output;
+        EXPECT_THAT(result.output, HasSubstr(text));
+    };
+    refused({"--out", path("a.stl")}, 2, "name a .ply, .glb or .obj file");
+    refused({"--out", path("no/a.ply")}, 2, "does not exist");
+    refused({"--out", path("a.ply"), "--report", path("no/a.json")}, 2, "does not exist");
+    refused({"--out", path("a.ply"), "--method", "magic"}, 2, "there are fusion");
+    refused({"--out", path("a.ply"), "--set", "magic=1"}, 2, "voxel_m");
+    refused({"--out", path("a.ply"), "--set", "voxel_m=7"}, 2, "must lie in");
+    refused({"--out", path("a.ply"), "--rig"}, 2, "only a .glb holds a skeleton");
+    refused({"--out", path("a.glb"), "--motion", "x.bvh"}, 2, "needs --rig");
+    refused({"--out", path("a.ply"), "--frames", "1"}, 1, "a single view shows one side only");
+    refused({"--out", path("a.ply"), "--source", "capture:" + path("turn")}, 1, "takes one camera");
+    EXPECT_FALSE(fs::exists(path("a.ply")));
+    write_text(*folder_ / "empty.json",
+               R"({"schema": 1, "frames": 3, "people": [], "cameras": [{"name": "front"}]})");
+    const auto nobody =
+        run_toile({"scan", "--source", "simulated:" + path("empty.json"), "--out", path("a.ply")});
+    EXPECT_EQ(nobody.status, 1);
+    EXPECT_THAT(nobody.output, HasSubstr("nobody is in view"));
+}
+
+} // namespace
+} // namespace toile::test

@@ -1,0 +1,63 @@
+#include "scan_errors.h"
+
+#include "geometry/nearest_surface.h"
+#include "geometry/slice.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace toile::evaluation {
+
+Deviation deviation(std::span<const Vec3f> points, const geometry::TriangleMesh& surface) {
+    const geometry::NearestSurface tree(surface.positions, surface.triangles);
+    std::vector<double> distances;
+    Deviation out;
+    for (const Vec3f& p : points) {
+        distances.push_back(tree.nearest(p).distance);
+        out.mean_m += distances.back();
+    }
+    if (distances.empty()) return out;
+    std::sort(distances.begin(), distances.end());
+    out.mean_m /= static_cast<double>(distances.size());
+    out.p95_m = distances[distances.size() * 95 / 100];
+    out.most_m = distances.back();
+    return out;
+}
+
+Eigen::Isometry3d best_motion(std::span<const Vec3f> points,
+                              const geometry::TriangleMesh& surface) {
+    constexpr float kReach = 0.03f;
+    const geometry::NearestSurface tree(surface.positions, surface.triangles);
+    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+    for (int round = 0; round < 20; ++round) {
+        Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Zero();
+        Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero(), row;
+        for (std::size_t i = 0; i < points.size(); i += 7) {
+            const Vec3d p = out * points[i].cast<double>();
+            const auto near = tree.nearest(p.cast<float>());
+            if (near.distance > kReach) continue;
+            const Vec3d n = near.normal.cast<double>();
+            row << p.cross(n), n;
+            h += row * row.transpose();
+            g += row * n.dot(p - near.point.cast<double>());
+        }
+        const Eigen::Matrix<double, 6, 1> step = -h.ldlt().solve(g);
+        Eigen::Isometry3d move = Eigen::Isometry3d::Identity();
+        const double angle = step.head<3>().norm();
+        if (angle > 1e-12)
+            move.linear() = Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix();
+        move.translation() = step.tail<3>();
+        out = move * out;
+    }
+    return out;
+}
+
+double girth_at(const geometry::TriangleMesh& mesh, float height) {
+    const auto plane = geometry::Plane::through(Vec3f(0, height, 0), Vec3f::UnitY());
+    double out = 0.0;
+    for (const auto& loop : geometry::slice(mesh.positions, mesh.triangles, plane))
+        if (loop.closed) out = std::max(out, geometry::hull_girth(loop.points, plane));
+    return out;
+}
+
+} // namespace toile::evaluation

@@ -1,0 +1,25 @@
+// How far a scanned surface is from the true one.
+#pragma once
+
+#include "geometry/mesh.h"
+
+#include <span>
+
+namespace toile::evaluation {
+
+struct Deviation {
+    double mean_m = 0.0, p95_m = 0.0, most_m = 0.0;
+};
+
+/// Distances of the points to the surface, sides not told apart.
+[[nodiscard]] Deviation deviation(std::span<const Vec3f> points,
+                                  const geometry::TriangleMesh& surface);
+
+/// Rigid motion that lays the points on the surface (point to plane, trimmed).
+[[nodiscard]] Eigen::Isometry3d best_motion(std::span<const Vec3f> points,
+                                            const geometry::TriangleMesh& surface);
+
+/// Convex girth of the largest closed curve at a height, metres; 0: none.
+[[nodiscard]] double girth_at(const geometry::TriangleMesh& mesh, float height);
+
+} // namespace toile::evaluation

@@ -1,0 +1,216 @@
+// scan_evaluation CAPTURE TRUTH.obj [OPTION=VALUE ...]: how right fusion is on one recorded turn.
+// Options: the filter's and the fusion's switches (see `set`), heights=a,b,c for girths (metres),
+// out=FILE.ply. Shares of time on stderr.
+#include "assets/colored_mesh.h"
+#include "assets/files.h"
+#include "body/surface_cache.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "imaging/capture_folder.h"
+#include "scan/fusion.h"
+#include "scan/subject.h"
+#include "scan_errors.h"
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace {
+
+using namespace toile;
+
+struct Settings {
+    scan::FilterOptions filter;
+    scan::FusionOptions fusion;
+    std::vector<float> heights;
+    std::string out;
+    bool known_poses = false; ///< from truth.jsonl
+};
+
+/// The first camera from each, of a subject that turned before it.
+std::vector<scan::Pose> true_poses(const std::string& folder) {
+    std::ifstream in(folder + "/truth.jsonl");
+    std::vector<scan::Pose> out;
+    for (std::string line; std::getline(in, line);) {
+        const auto m =
+            nlohmann::json::parse(line).at("body_from_camera").get<std::vector<double>>();
+        scan::Pose pose = scan::Pose::Identity();
+        std::copy_n(m.begin(), 16, pose.matrix().data());
+        out.push_back(pose);
+    }
+    for (std::size_t i = out.size(); i-- > 0;)
+        out[i] = out.front().inverse() * out[i];
+    return out;
+}
+
+void set(Settings& s, const std::string& name, const std::string& value) {
+    const double number = std::atof(value.c_str());
+    if (name == "flying")
+        s.filter.flying_pixels = number != 0;
+    else if (name == "edges")
+        s.filter.edge_pixels = static_cast<int>(number);
+    else if (name == "bilateral")
+        s.filter.joint_bilateral = number != 0;
+    else if (name == "radius")
+        s.filter.radius = static_cast<int>(number);
+    else if (name == "steepest")
+        s.filter.steepest = number;
+    else if (name == "loop")
+        s.fusion.close_loop = number != 0;
+    else if (name == "joint")
+        s.fusion.refine_jointly = number != 0;
+    else if (name == "bias")
+        s.fusion.bias_rounds = static_cast<int>(number);
+    else if (name == "voxel")
+        s.fusion.voxel_m = static_cast<float>(number);
+    else if (name == "truncation")
+        s.fusion.truncation_m = static_cast<float>(number);
+    else if (name == "pair_angle")
+        s.fusion.pair_angle = number;
+    else if (name == "pairs")
+        s.fusion.pairs = static_cast<std::size_t>(number);
+    else if (name == "smooth")
+        s.fusion.smoothing_rounds = static_cast<int>(number);
+    else if (name == "out")
+        s.out = value;
+    else if (name == "known")
+        s.known_poses = number != 0;
+    else if (name == "heights") {
+        std::istringstream in(value);
+        for (std::string word; std::getline(in, word, ',');)
+            s.heights.push_back(static_cast<float>(std::atof(word.c_str())));
+    } else
+        throw Error(name + ": no such option");
+}
+
+void rows_on_all(std::uint32_t count, std::uint32_t grain,
+                 const std::function<void(std::uint32_t, std::uint32_t)>& body) {
+    const std::uint32_t ranges = (count + grain - 1) / grain;
+    parallel_for(ranges, [&](std::size_t k) {
+        const auto begin = static_cast<std::uint32_t>(k) * grain;
+        body(begin, std::min(count, begin + grain));
+    });
+}
+
+class Clock {
+  public:
+    void lap(const char* what) {
+        const auto now = std::chrono::steady_clock::now();
+        std::fprintf(stderr, "%-10s %6.2f s\n", what,
+                     std::chrono::duration<double>(now - last_).count());
+        last_ = now;
+    }
+
+  private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void print(const char* what, const evaluation::Deviation& d) {
+    std::printf("  %-26s mean %5.2f  95 %% %5.2f  most %6.2f mm\n", what, 1e3 * d.mean_m,
+                1e3 * d.p95_m, 1e3 * d.most_m);
+}
+
+/// A mesh file, or the first frame of a recording's surface cache.
+geometry::TriangleMesh load_truth(const std::string& name) {
+    if (!std::filesystem::is_directory(name)) return assets::load_colored_mesh(name).mesh;
+    const body::SurfaceCache cache = body::open_surface_cache(name);
+    geometry::TriangleMesh out = assets::colored_mesh_of(cache.scene).mesh;
+    std::vector<std::vector<Vec3f>> positions;
+    cache.load(0, positions);
+    out.positions.clear();
+    for (const auto& part : positions)
+        out.positions.insert(out.positions.end(), part.begin(), part.end());
+    return out;
+}
+
+void compare(const geometry::TriangleMesh& scan, const geometry::TriangleMesh& truth,
+             const Settings& s) {
+    print("as it stands", evaluation::deviation(scan.positions, truth));
+    const Eigen::Isometry3d move = evaluation::best_motion(scan.positions, truth);
+    geometry::TriangleMesh laid = scan;
+    for (Vec3f& p : laid.positions)
+        p = (move * p.cast<double>()).cast<float>();
+    print("laid on the truth", evaluation::deviation(laid.positions, truth));
+    print("truth to scan", evaluation::deviation(truth.positions, laid));
+    for (const float h : s.heights)
+        std::printf("  girth at %.2f m: %6.1f mm, true %6.1f, %+.1f\n", static_cast<double>(h),
+                    1e3 * evaluation::girth_at(laid, h), 1e3 * evaluation::girth_at(truth, h),
+                    1e3 * (evaluation::girth_at(laid, h) - evaluation::girth_at(truth, h)));
+}
+
+void run(const std::string& folder, const std::string& truth_file, const Settings& s) {
+    Clock clock;
+    const imaging::CaptureCamera capture = imaging::open_capture(folder).cameras.at(0);
+    const Eigen::Isometry3d world =
+        capture.world_from_camera.value_or(Eigen::Isometry3d::Identity());
+    const Vec3f up = (world.linear().transpose() * Vec3d::UnitY()).cast<float>();
+    scan::RigidFusion fusion(s.fusion, rows_on_all);
+    std::optional<geometry::Plane> floor;
+    const auto poses = s.known_poses ? true_poses(folder) : std::vector<scan::Pose>{};
+    double load = 0, filter = 0, track = 0;
+    for (std::uint32_t i = 0; i < capture.frames.size(); ++i) {
+        const auto t0 = std::chrono::steady_clock::now();
+        const imaging::DepthImage depth = capture.load_depth(i);
+        const auto t1 = std::chrono::steady_clock::now();
+        const auto color = capture.load_color(i);
+        std::vector<scan::Rgba8> colors;
+        if (color)
+            for (std::size_t k = 0; k + 3 < color->pixels.size(); k += 4)
+                colors.push_back(
+                    {color->pixels[k], color->pixels[k + 1], color->pixels[k + 2], 255});
+        const scan::Picture picture{capture.intrinsics, depth.metres, colors};
+        const scan::Subject subject = scan::find_subject(picture, up);
+        if (!subject.trouble.empty()) throw Error(subject.trouble);
+        if (i == 0) floor = subject.floor;
+        scan::DepthView view = scan::filtered_view(picture, subject.mask, s.filter, rows_on_all);
+        const auto t2 = std::chrono::steady_clock::now();
+        if (s.known_poses)
+            fusion.add_at(std::move(view), poses.at(i));
+        else
+            fusion.add(std::move(view));
+        const auto t3 = std::chrono::steady_clock::now();
+        load += std::chrono::duration<double>(t1 - t0).count();
+        filter += std::chrono::duration<double>(t2 - t1).count();
+        track += std::chrono::duration<double>(t3 - t2).count();
+    }
+    std::fprintf(stderr, "load %.2f filter %.2f track %.2f s\n", load, filter, track);
+    clock.lap("frames");
+    scan::FusedSurface fused = fusion.finish(floor, [](double) {});
+    clock.lap("finish");
+    const auto& r = fused.report;
+    std::printf("frames %zu lost %zu turn %.1f deg loop %d gap %.2f mm error %.2f mm joint rms "
+                "%.2f surface rms %.2f mm guessed %.1f %% floor %d, %zu triangles\n",
+                r.frames, r.lost_frames, r.turn_rad * 57.29578, r.loop_closed, 1e3 * r.loop_gap_m,
+                1e3 * r.loop_error_m, 1e3 * r.joint_rms_m, 1e3 * r.surface_rms_m,
+                100 * r.guessed_share, floor.has_value(), fused.mesh.triangles.size());
+    for (Vec3f& p : fused.mesh.positions)
+        p = (world * p.cast<double>()).cast<float>();
+    if (!s.out.empty()) {
+        assets::ColoredMesh mesh{fused.mesh, fused.colors};
+        assets::save_scene(assets::scene_of(mesh, "scan"), s.out);
+    }
+    compare(fused.mesh, load_truth(truth_file), s);
+    clock.lap("compare");
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        if (argc < 3) throw toile::Error("scan_evaluation CAPTURE TRUTH.obj [OPTION=VALUE ...]");
+        Settings settings;
+        for (int i = 3; i < argc; ++i) {
+            const std::string word = argv[i];
+            const auto at = word.find('=');
+            set(settings, word.substr(0, at), at == std::string::npos ? "1" : word.substr(at + 1));
+        }
+        settings.fusion.filter = settings.filter;
+        run(argv[1], argv[2], settings);
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 1;
+    }
+    return 0;
+}
