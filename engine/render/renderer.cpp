@@ -86,6 +86,7 @@ class Renderer::Impl {
     void draw(const Scene& scene);
     void read(imaging::Image& image);
     void present(int window_width, int window_height);
+    void copy_to(GLuint framebuffer, const Part& from, const Part& to);
 
     Context& context_;
     const GladGLContext& gl_;
@@ -498,6 +499,15 @@ void Renderer::Impl::present(int window_width, int window_height) {
     check_gl(gl_, "showing the picture");
 }
 
+void Renderer::Impl::copy_to(GLuint framebuffer, const Part& from, const Part& to) {
+    context_.make_current();
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_->final.object.id());
+    gl_.BlitFramebuffer(from.left, from.bottom, from.right, from.top, to.left, to.bottom, to.right,
+                        to.top, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    check_gl(gl_, "copying the picture");
+}
+
 Renderer::Renderer(Context& context, const RendererOptions& options) {
     check_size(options.width, options.height);
     impl_ = std::make_unique<Impl>(context, options);
@@ -557,6 +567,9 @@ imaging::Image Renderer::read() {
     imaging::Image image;
     impl_->read(image);
     return image;
+}
+void Renderer::copy_to(std::uint32_t framebuffer, const Part& from, const Part& to) {
+    impl_->copy_to(framebuffer, from, to);
 }
 void Renderer::present(int window_width, int window_height) {
     impl_->present(window_width, window_height);

@@ -62,6 +62,13 @@ class Renderer {
     void read(imaging::Image& image);
     [[nodiscard]] imaging::Image read();
 
+    /// Copies part of the last picture into a framebuffer of the same context (OpenGL's name).
+    /// Rows of both count from the bottom; `to` may be wider than `from`, then it is enlarged.
+    struct Part {
+        int left = 0, bottom = 0, right = 0, top = 0;
+    };
+    void copy_to(std::uint32_t framebuffer, const Part& from, const Part& to);
+
     /// Shows the last picture in the context's default framebuffer (a window of this many pixels),
     /// as large as fits, centred.
     void present(int window_width, int window_height);
