@@ -237,12 +237,14 @@ void Renderer::Impl::collect(const Scene& scene) {
         if (m.base_color.w() < 0.5f || (base != nullptr && base->holes)) d.variant |= kHoles;
         if (m.normal_texture != TextureId::none) d.variant |= kNormalMap;
         if (d.mesh->colors.id() != 0) d.variant |= kColored;
-        if (instance.draw == Instance::Draw::visible) {
+        if (instance.draw == Instance::Draw::visible || instance.draw == Instance::Draw::receiver) {
             const auto index = static_cast<std::size_t>(instance.material);
             d.material_index = static_cast<float>(index) / 255.0f;
             materials_[2 * index] = {m.sheen_color.x(), m.sheen_color.y(), m.sheen_color.z(),
                                      std::clamp(m.sheen_roughness, 0.1f, 1.0f)};
-            materials_[2 * index + 1] = Vec4f::Constant(std::clamp(m.roughness, 0.05f, 1.0f));
+            const float received = instance.draw == Instance::Draw::receiver ? 1.0f : 0.0f;
+            materials_[2 * index + 1] = {std::clamp(m.roughness, 0.05f, 1.0f), received, 0.0f,
+                                         0.0f};
         }
         drawables_.push_back(d);
     }
@@ -280,7 +282,7 @@ void Renderer::Impl::fill_frame(const Scene& scene) {
     frame_.occlusion = {b.depth_tolerance, hides ? (b.soft_edges ? 2.0f : 1.0f) : 0.0f,
                         high ? 16.0f : 10.0f, high ? 20.0f : 12.0f};
     const bool floor = scene.floor && b.kind == Background::Kind::studio;
-    frame_.flags = {floor ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
+    frame_.flags = {floor ? 1.0f : 0.0f, b.noise, static_cast<float>(b.noise_seed % 1021u), 0.0f};
     set_touched(frame_, visible);
     contact_.begin(casters);
     const Vec3f rectangle = contact_.rectangle();
@@ -539,6 +541,13 @@ MaterialId Renderer::add_material(const Material& m) {
 MeshId Renderer::add_mesh(const MeshDescription& mesh) {
     impl_->context_.make_current();
     return impl_->resources_.add_mesh(mesh);
+}
+void Renderer::remove_texture(TextureId texture) {
+    impl_->context_.make_current();
+    impl_->resources_.remove_texture(texture);
+}
+void Renderer::remove_material(MaterialId material) {
+    impl_->resources_.remove_material(material);
 }
 void Renderer::remove_mesh(MeshId mesh) {
     impl_->context_.make_current();

@@ -42,6 +42,9 @@ class Renderer {
     [[nodiscard]] MaterialId add_material(const Material& material);
     /// \throw Error when an index is out of range, a count differs or a value is not finite
     [[nodiscard]] MeshId add_mesh(const MeshDescription& mesh);
+    /// Frees a texture or a material, which nothing may name any more; ids are given out again.
+    void remove_texture(TextureId texture);
+    void remove_material(MaterialId material);
     /// Frees a mesh; its id is not given out again. \throw Error when it is unknown
     void remove_mesh(MeshId mesh);
 

@@ -4,18 +4,22 @@
 
 namespace toile::apps::kiosk {
 
-Action Pointer::under(std::span<const Hand> hands, std::span<const Button> buttons) const {
+Action Pointer::under(std::span<const Hand> hands, std::span<const Button> buttons) {
     Action found = Action::invalid;
+    std::uint32_t whose = 0;
     for (const Hand& hand : hands) {
         if (!hand.raised) continue;
         for (const Button& button : buttons) {
             const bool own = button.action == target_;
             const float slack = own ? options_.slack * button.rect.height : 0.0f;
             if (!button.rect.inset(-slack).contains(hand.place)) continue;
-            if (own) return target_; // whoever came first keeps the button
-            if (found == Action::invalid) found = button.action;
+            if (own && hand.person == person_) return target_; // who came first keeps the button
+            if (found != Action::invalid) continue;
+            found = button.action;
+            whose = hand.person;
         }
     }
+    if (found != Action::invalid) person_ = whose;
     return found;
 }
 

@@ -37,6 +37,8 @@ class Pointer {
     void move_focus(int by, std::span<const Button> buttons);
     [[nodiscard]] Action press_focus(std::span<const Button> buttons) const;
 
+    /// Whose hand that is, or was when it pressed.
+    [[nodiscard]] std::uint32_t person() const { return person_; }
     /// The button that a hand rests on, and how much of the dwell is over, [0, 1].
     [[nodiscard]] Action rested_on() const { return target_; }
     [[nodiscard]] float progress() const;
@@ -45,10 +47,11 @@ class Pointer {
     void forget();
 
   private:
-    [[nodiscard]] Action under(std::span<const Hand> hands, std::span<const Button> buttons) const;
+    [[nodiscard]] Action under(std::span<const Hand> hands, std::span<const Button> buttons);
 
     PointerOptions options_;
     Action target_ = Action::invalid;
+    std::uint32_t person_ = 0;
     double rested_s_ = 0.0;
     double off_s_ = 0.0;
     bool spent_ = false; ///< pressed, and not left since

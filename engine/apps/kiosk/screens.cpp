@@ -161,12 +161,13 @@ void Screens::act(Action action) {
 }
 
 void Screens::act_in_mirror(Action action) {
-    constexpr std::array<std::pair<Action, Effect>, 5> kSame = {{
+    constexpr std::array<std::pair<Action, Effect>, 6> kSame = {{
         {Action::next_garment, Effect::next_garment},
         {Action::previous_garment, Effect::previous_garment},
         {Action::next_size, Effect::next_size},
         {Action::next_colour, Effect::next_colour},
         {Action::snapshot, Effect::snapshot},
+        {Action::turn, Effect::turn},
     }};
     for (const auto& [asked, effect] : kSame)
         if (action == asked) effects_.push_back(effect);
@@ -179,8 +180,6 @@ void Screens::act_in_mirror(Action action) {
     } else if (action == Action::live) {
         effects_.push_back(Effect::unfreeze);
         go(ScreenName::mirror);
-    } else if (action == Action::turn) {
-        seconds_ = 0.0;
     }
 }
 

@@ -63,6 +63,7 @@ enum class Effect {
     erase,           ///< forget everything of everybody
     freeze,
     unfreeze,
+    turn, ///< the avatar, by a quarter
     snapshot,
     next_garment,
     previous_garment,

@@ -8,8 +8,7 @@
 namespace toile::apps::kiosk {
 namespace {
 
-constexpr std::array<const char*, 6> kFaults = {"camera", "plugin", "picture",
-                                                "disk",   "crash",  "stall"};
+constexpr std::array<const char*, 5> kFaults = {"camera", "picture", "disk", "crash", "stall"};
 constexpr std::int64_t kMostFrames = 100'000'000;
 
 ScriptStep read_step(JsonObject& json) {
@@ -33,7 +32,7 @@ ScriptStep read_step(JsonObject& json) {
         step.kind = Kind::fault;
         step.name = json.text("fault");
         if (std::find(kFaults.begin(), kFaults.end(), step.name) == kFaults.end())
-            throw json.error("fault", "is none of camera, plugin, picture, disk, crash and stall");
+            throw json.error("fault", "is none of camera, picture, disk, crash and stall");
     }
     if (json.has("quit")) {
         ++kinds;

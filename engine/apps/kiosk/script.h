@@ -19,7 +19,7 @@ struct ScriptStep {
     std::string name; ///< of a picture without its ending; of a fault
 };
 
-/// Faults that a script can inject: "camera", "plugin", "picture", "disk", "crash", "stall".
+/// Faults that a script can inject: "camera", "picture", "disk", "crash", "stall".
 struct Script {
     std::vector<ScriptStep> steps; ///< in the order of their frames
 
