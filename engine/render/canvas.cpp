@@ -151,25 +151,36 @@ void Canvas::text(const Vec2f& at, std::string_view words, const TextStyle& styl
                         first + words.size());
 }
 
+float Canvas::paragraph_height(float width, std::string_view words, const TextStyle& style) const {
+    float height = 0.0f;
+    for (std::size_t begin = 0; begin < words.size();) {
+        begin = line_end(words, begin, width, style).next;
+        height += kLineDistance * style.size;
+    }
+    return height;
+}
+
+Canvas::Line Canvas::line_end(std::string_view words, std::size_t begin, float width,
+                              const TextStyle& style) const {
+    Line out{words.size(), words.size()};
+    for (std::size_t i = begin; i <= words.size(); ++i) {
+        if (i < words.size() && words[i] != ' ' && words[i] != '\n') continue;
+        const bool fits = text_width(words.substr(begin, i - begin), style) <= width;
+        if (!fits && out.end != words.size()) break;
+        out = {i, std::min(words.size(), i + 1)};
+        if (!fits || (i < words.size() && words[i] == '\n')) break;
+    }
+    return out;
+}
+
 float Canvas::paragraph(const Vec2f& at, float width, std::string_view words,
                         const TextStyle& style) {
     Vec2f place = at;
-    std::size_t begin = 0;
-    while (begin < words.size()) {
-        std::size_t end = words.size();
-        std::size_t next = words.size();
-        for (std::size_t i = begin; i <= words.size(); ++i) {
-            if (i < words.size() && words[i] != ' ' && words[i] != '\n') continue;
-            const bool fits = text_width(words.substr(begin, i - begin), style) <= width;
-            if (!fits && end != words.size()) break;
-            end = i;
-            next = std::min(words.size(), i + 1);
-            if (!fits || (i < words.size() && words[i] == '\n')) break;
-            if (i == words.size()) break;
-        }
-        text(place, words.substr(begin, end - begin), style);
+    for (std::size_t begin = 0; begin < words.size();) {
+        const Line line = line_end(words, begin, width, style);
+        text(place, words.substr(begin, line.end - begin), style);
         place.y() += kLineDistance * style.size;
-        begin = next;
+        begin = line.next;
     }
     return place.y() - at.y();
 }

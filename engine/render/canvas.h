@@ -87,6 +87,9 @@ class Canvas {
     void text(const Vec2f& at, std::string_view words, const TextStyle& style);
     /// Broken between words into lines of at most `width` pixels; the height that they take.
     float paragraph(const Vec2f& at, float width, std::string_view words, const TextStyle& style);
+    /// The height alone.
+    [[nodiscard]] float paragraph_height(float width, std::string_view words,
+                                         const TextStyle& style) const;
     /// Pixels that a line takes.
     [[nodiscard]] float text_width(std::string_view words, const TextStyle& style) const;
     /// Largest size up to the style's in which a line is no wider than `width`.
@@ -97,6 +100,13 @@ class Canvas {
     [[nodiscard]] Impl& impl() { return *impl_; }
 
   private:
+    struct Line {
+        std::size_t end;  ///< of the words that fit
+        std::size_t next; ///< where the next line begins
+    };
+    [[nodiscard]] Line line_end(std::string_view words, std::size_t begin, float width,
+                                const TextStyle& style) const;
+
     std::unique_ptr<Impl> impl_;
 };
 

@@ -1,9 +1,11 @@
 #include "apps/kiosk/catalogue.h"
 
+#include "core/bytes.h"
 #include "core/error.h"
 
 #include <algorithm>
 #include <chrono>
+#include <string_view>
 #include <utility>
 
 namespace toile::apps::kiosk {
@@ -27,6 +29,23 @@ std::uint64_t file_stamp(std::uint64_t hash, const fs::directory_entry& entry) {
     hash = mixed(hash, entry.file_size(code));
     return mixed(
         hash, static_cast<std::uint64_t>(entry.last_write_time(code).time_since_epoch().count()));
+}
+
+constexpr std::size_t kMostManifest = 16u << 20;
+
+Article article_of(const garment::Manifest& manifest, const fs::path& source, std::uint64_t stamp) {
+    Article out;
+    out.source = source;
+    out.stamp = stamp;
+    out.id = manifest.id;
+    out.name = manifest.name;
+    for (const garment::SizeEntry& size : manifest.sizes)
+        out.sizes.push_back(size.name);
+    for (const garment::Variant& variant : manifest.variants)
+        out.colours.push_back(variant.name);
+    if (!manifest.thumbnail.empty() && fs::is_directory(source))
+        out.thumbnail = source / manifest.thumbnail;
+    return out;
 }
 
 bool is_garment(const fs::path& path) {
@@ -77,20 +96,21 @@ std::uint64_t article_stamp(const fs::path& source) {
 }
 
 Article read_article(const fs::path& source) {
-    Article out;
-    out.source = source;
-    out.stamp = article_stamp(source);
+    const std::uint64_t stamp = article_stamp(source);
     const auto package = garment::load_package(source);
-    const garment::Manifest& manifest = package->manifest;
-    out.id = manifest.id;
-    out.name = manifest.name;
-    for (const garment::SizeEntry& size : manifest.sizes)
-        out.sizes.push_back(size.name);
-    for (const garment::Variant& variant : manifest.variants)
-        out.colours.push_back(variant.name);
-    if (!manifest.thumbnail.empty() && fs::is_directory(source))
-        out.thumbnail = source / manifest.thumbnail;
-    return out;
+    return article_of(package->manifest, source, stamp);
+}
+
+Article read_article_head(const fs::path& source) {
+    if (!fs::is_directory(source)) return read_article(source);
+    const std::uint64_t stamp = article_stamp(source);
+    const fs::path file = source / "garment.json";
+    const std::vector<std::uint8_t> bytes = read_bytes(file, kMostManifest);
+    garment::Faults faults;
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const garment::Manifest manifest = garment::read_manifest(text, file.string(), faults);
+    if (!faults.empty()) throw garment::PackageError(faults.front());
+    return article_of(manifest, source, stamp);
 }
 
 Choice next_size(const Choice& choice, const Article& article) {
@@ -122,8 +142,21 @@ CatalogueWatch::~CatalogueWatch() {
     thread_.join();
 }
 
+void CatalogueWatch::check_all() {
+    for (const Article& article : known_) {
+        if (stop_) return;
+        try {
+            (void)read_article(article.source);
+        } catch (const std::exception& e) {
+            const std::lock_guard lock(mutex_);
+            changes_.push_back({article, e.what()});
+        }
+    }
+}
+
 void CatalogueWatch::run() {
     constexpr double kNap_s = 0.02;
+    check_all();
     double waited = 0.0;
     while (!stop_) {
         std::this_thread::sleep_for(std::chrono::duration<double>(kNap_s));

@@ -44,6 +44,8 @@ struct CatalogueChange {
 [[nodiscard]] std::vector<std::filesystem::path>
 garment_sources(const std::vector<std::string>& names, const std::filesystem::path& folder);
 
+/// From garment.json alone, so that a mirror is up at once; a zip is read whole. \throw Error
+[[nodiscard]] Article read_article_head(const std::filesystem::path& source);
 /// Checks a whole package. \throw Error with the first thing that is wrong
 [[nodiscard]] Article read_article(const std::filesystem::path& source);
 /// Changes whenever a file of the garment comes, goes, grows or is written.
@@ -55,7 +57,8 @@ garment_sources(const std::vector<std::string>& names, const std::filesystem::pa
 /// Another article, `by` further, in the suiting size and its first colour.
 [[nodiscard]] Choice step(const Choice& choice, int by, std::size_t articles);
 
-/// Looks at the garments from a thread of its own and tells what changed.
+/// Looks at the garments from a thread of its own and tells what is or becomes unsound, and what
+/// changed.
 class CatalogueWatch {
   public:
     CatalogueWatch(std::vector<Article> known, double every_s);
@@ -68,6 +71,7 @@ class CatalogueWatch {
 
   private:
     void run();
+    void check_all();
     void look();
 
     std::vector<Article> known_;

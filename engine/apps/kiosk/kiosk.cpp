@@ -30,7 +30,7 @@ std::vector<Article> read_articles(const KioskConfig& config) {
     for (const std::filesystem::path& source :
          garment_sources(config.garments, config.garments_folder)) {
         try {
-            out.push_back(read_article(source));
+            out.push_back(read_article_head(source));
         } catch (const std::exception& e) {
             log::warning(e.what());
             refused = e.what();
@@ -80,6 +80,10 @@ void Kiosk::note_fault(Fault fault, std::string words) {
         notes_.pop_front();
 }
 
+void Kiosk::beat() const {
+    if (run_.heartbeat >= 0) (void)!write(run_.heartbeat, "+", 1);
+}
+
 void Kiosk::run() {
     while (frame()) {
     }
@@ -92,7 +96,6 @@ bool Kiosk::frame() {
     const double before_s = now_s_;
     now_s_ = live_ ? began_s : static_cast<double>(number_) * kFrame_s;
     const double dt_s = number_ == 0 ? kFrame_s : std::clamp(now_s_ - before_s, 0.0, 1.0);
-    if (run_.heartbeat >= 0) (void)!write(run_.heartbeat, "+", 1);
     if (!display_->poll() || quit_ || host::interrupt_flag()) return false;
     if (run_.frames > 0 && number_ >= run_.frames) return false;
     fresh_ = screens_.now() != ScreenName::safe && feed_.next(people_, now_s_);
@@ -102,6 +105,7 @@ bool Kiosk::frame() {
         if (last_frame_s_ > 0.0 && now_s_ - last_frame_s_ < 2.0 * kFrame_s) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             now_s_ = before_s; // this was no frame of the mirror
+            beat();
             take_input();
             return true;
         }
@@ -113,7 +117,9 @@ bool Kiosk::frame() {
             note_fault(Fault::camera, texts_.with(Text::camera_lost, {{"why", *note}}));
     }
     take_script();
+    fresh_ = fresh_ && feed_.up();
     take_input();
+    fresh_ = fresh_ && feed_.up(); // the operator may have had it opened again
     if (fresh_)
         take_frame(dt_s);
     else
@@ -144,6 +150,7 @@ bool Kiosk::frame() {
         if (live_) metrics_.picture_scale = static_cast<double>(scale_.add(ended_s - began_s));
     }
     clock_.end_frame();
+    beat();
     ++number_;
     ++metrics_.frames;
     write_metrics(false);
@@ -264,6 +271,7 @@ void Kiosk::take_changes() {
                        texts_.with(Text::garment_refused, {{"id", id}, {"why", change.refused}}));
             continue;
         }
+        log::info(texts_.with(Text::garment_changed, {{"id", id}}));
         notes_.push_back({texts_.with(Text::garment_changed, {{"id", id}}),
                           now_s_ + run_.config.operator_line_s});
         for (std::size_t i = 0; i < articles_.size(); ++i) {
@@ -281,6 +289,7 @@ void Kiosk::take_changes() {
 }
 
 void Kiosk::act(Action action, std::uint32_t person) {
+    if (action != Action::invalid) hand_at_s_ = now_s_;
     Shopper* shopper = person == 0 ? visitors_.first() : visitors_.find(person);
     if (action == Action::agree && shopper != nullptr) {
         shopper->agreed = true;
@@ -327,7 +336,8 @@ void Kiosk::perform(Effect effect, Shopper* shopper) {
         turn_.erase();
         visitors_.erase();
         display_->picture().erase();
-        people_ = {};
+        people_.people.clear();
+        people_.shapes.clear();
         measuring_ = Measuring::not_begun;
         shopper_note_ = {};
         frozen_from_.reset();
@@ -385,7 +395,11 @@ void Kiosk::inject(const std::string& fault) {
 
 void Kiosk::take_script() {
     for (const ScriptStep& step : run_.script.at(number_)) {
-        if (step.kind == ScriptStep::Kind::act) act(step.action, 0);
+        if (step.kind == ScriptStep::Kind::act) {
+            const auto& all = visitors_.all();
+            if (step.person == 2 && all.size() < 2) continue;
+            act(step.action, step.person == 2 ? all[1].id : 0);
+        }
         if (step.kind == ScriptStep::Kind::fault) inject(step.name);
         if (step.kind == ScriptStep::Kind::quit) quit_ = true;
     }

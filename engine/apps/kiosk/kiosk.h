@@ -71,9 +71,11 @@ class Kiosk {
     void write_metrics(bool now);
     void write_report();
     void pace(double began_s) const;
+    void beat() const;
 
     // kiosk_view.cpp: what is shown
     void draw();
+    [[nodiscard]] std::vector<WornMeshes*> worn_meshes(bool second);
     void draw_picture();
     void draw_frozen();
     void rebuild_display(const std::string& why);
@@ -125,6 +127,7 @@ class Kiosk {
     std::optional<body::Pose> frozen_from_;
     std::optional<CameraSettings> floor_;
     bool snapshot_ = false;
+    double hand_at_s_ = -1e9; ///< when a hand was raised last, or something was pressed
     double metrics_at_s_ = 0.0;
     pipeline::StageClock clock_;
     pipeline::DurationHistogram frame_time_;

@@ -7,6 +7,8 @@
 #include "core/paths.h"
 #include "host/job.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <memory>
 
 namespace toile::apps {
@@ -102,6 +104,9 @@ int kiosk_command(const KioskOptions& options, const GlobalOptions& global) {
     const bool live = !run.headless || run.realtime;
     if (options.heartbeat < 0 && live && run.config.watchdog && !options.no_watchdog)
         return kiosk::watch(child_arguments(options, global), {run.config.stall_s});
+    // The graphics library would keep compiled shaders in the home folder.
+    setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    setenv("MESA_GLSL_CACHE_DISABLE", "true", 1);
     host::catch_interrupts();
     kiosk::Kiosk mirror(std::move(run), global);
     mirror.run();

@@ -18,6 +18,14 @@ std::string number(double value, int digits) {
     return out.data();
 }
 
+// "capture:/somewhere/long/room" as "capture:room".
+std::string short_name(const std::string& uri) {
+    const std::size_t scheme = uri.find(':');
+    const std::size_t slash = uri.rfind('/');
+    if (scheme == std::string::npos || slash == std::string::npos || slash < scheme) return uri;
+    return uri.substr(0, scheme + 1) + uri.substr(slash + 1);
+}
+
 render::Rect whole(const render::Screen& screen) {
     return {0.0f, 0.0f, static_cast<float>(screen.width()), static_cast<float>(screen.height())};
 }
@@ -129,7 +137,7 @@ std::vector<std::string> Kiosk::setup_lines() {
         const imaging::Intrinsics& camera = feed_.stream().depth;
         out.push_back(texts_.with(
             Text::setup_sensor,
-            {{"name", feed_.uri()},
+            {{"name", short_name(feed_.uri())},
              {"size", std::to_string(camera.width) + " x " + std::to_string(camera.height)}}));
     } else {
         out.push_back(texts_[Text::setup_no_sensor]);
@@ -165,6 +173,9 @@ ScreenView Kiosk::view() {
     if (out.screen != ScreenName::setup && out.screen != ScreenName::attract)
         for (const Hand& hand : visitors_.hands([this](const Vec3f& p) { return on_screen(p); }))
             if (hand.raised) out.hands.push_back(hand.place);
+    if (!out.hands.empty() || out.focus) hand_at_s_ = now_s_;
+    out.attention =
+        std::clamp(static_cast<float>(1.0 - (now_s_ - hand_at_s_ - 2.0) / 0.6), 0.0f, 1.0f);
     out.declined = screens_.declined();
     out.far_away = visitors_.somebody_far();
     out.measuring = measuring_;
@@ -192,21 +203,26 @@ ScreenView Kiosk::view() {
     return out;
 }
 
+// What everybody here wears, as it is now; of the first one the second look.
+std::vector<WornMeshes*> Kiosk::worn_meshes(bool second) {
+    std::vector<WornMeshes*> out;
+    for (Shopper& shopper : visitors_.all()) {
+        const bool other = second && &shopper == visitors_.first();
+        std::optional<WornLook>& look = shopper.looks[other ? 1 : 0];
+        if (!look || !shopper.here) continue;
+        look->meshes->update();
+        out.push_back(look->meshes.get());
+    }
+    return out;
+}
+
 // Camera's picture with everybody's clothes; two looks of the first shopper side by side.
 void Kiosk::draw_picture() {
     LivePicture& picture = display_->picture();
     if (picture.empty()) return;
     const bool two = screens_.comparing() && screens_.now() == ScreenName::mirror;
     for (std::size_t look = 0; look < (two ? 2u : 1u); ++look) {
-        std::vector<WornMeshes*> worn;
-        for (Shopper& shopper : visitors_.all()) {
-            const bool second = two && &shopper == visitors_.first() && look == 1;
-            std::optional<WornLook>& one = shopper.looks[second ? 1 : 0];
-            if (!one || !shopper.here) continue;
-            one->meshes->update();
-            worn.push_back(one->meshes.get());
-        }
-        picture.draw_mirror(worn, scale_.now());
+        picture.draw_mirror(worn_meshes(look == 1), scale_.now());
         render::Rect to = whole(display_->screen());
         render::Placement place = placement(to);
         if (two) {
@@ -309,9 +325,13 @@ void Kiosk::put_out_pictures() {
         imaging::save_image(picture, run_.out);
     }
     for (const ScriptStep& step : steps) {
-        if (step.kind != ScriptStep::Kind::picture) continue;
-        screen.read(picture);
-        imaging::save_image(picture, run_.out / (step.name + ".png"));
+        if (step.kind == ScriptStep::Kind::picture) {
+            screen.read(picture);
+            imaging::save_image(picture, run_.out / (step.name + ".png"));
+        }
+        if (step.kind == ScriptStep::Kind::mask && !display_->picture().empty())
+            imaging::save_image(display_->picture().cloth_mask(worn_meshes(false)),
+                                run_.out / (step.name + ".png"));
     }
 }
 

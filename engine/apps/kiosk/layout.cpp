@@ -67,16 +67,18 @@ std::vector<Button> lay_out(ScreenName, const std::vector<Action>& offers, int w
         (on_the_left(action) ? left : right).actions.push_back(action);
     left.width = right.width = std::round(std::min(0.30f * w, 3.4f * sizes.button));
     float middle = 0.66f * h;
-    left.x = sizes.margin;
-    right.x = w - sizes.margin - right.width;
+    // Up to the edges: a hand held out is there.
+    const float edge = 0.25f * sizes.margin;
+    left.x = edge;
+    right.x = w - edge - right.width;
     if (reach && reach->metre > 0.0f) {
         middle = reach->shoulders.y() + 0.5f * (kDown_m - kUp_m) * reach->metre;
         // A button's inner edge is where the hand is; it never hides the trunk.
         const float aside = kAside_m * reach->metre;
-        left.x = std::clamp(reach->shoulders.x() - aside - 0.5f * left.width, sizes.margin,
+        left.x = std::clamp(reach->shoulders.x() - aside - 0.5f * left.width, edge,
                             w - 2.0f * (sizes.margin + left.width));
         right.x = std::clamp(reach->shoulders.x() + aside - 0.5f * right.width,
-                             left.x + left.width + sizes.margin, w - sizes.margin - right.width);
+                             left.x + left.width + sizes.margin, w - edge - right.width);
     }
     std::vector<Button> out;
     stack(left, middle, sizes, h, out);

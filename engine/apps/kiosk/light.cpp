@@ -10,7 +10,7 @@
 namespace toile::apps::kiosk {
 namespace {
 
-constexpr float kReflected = 0.30f; // of a room on the whole
+constexpr float kReflected = 0.34f; // of a room on the whole
 constexpr float kWhite = 0.97f;     // sRGB from which a value counts as clipped
 constexpr std::size_t kFewest = 60;
 constexpr std::size_t kGroups = 16;
@@ -76,12 +76,13 @@ PictureTone picture_tone(const imaging::Image& picture) {
     out.tint = (0.5f * (mean / y) + Vec3f::Constant(0.5f)).cwiseMax(0.6f).cwiseMin(1.5f);
     out.tint /= out.tint.mean();
     out.clipped = static_cast<float>(clipped) / static_cast<float>(count);
-    // The median of |a - 2b + c| of noise alone is 1.65 of its standard deviation.
+    // 35 % of |a - 2b + c| of noise alone are below 1.11 of its standard deviation; what lies above
+    // may be the room's own pattern.
     std::size_t below = 0;
-    std::size_t median = 0;
-    while (median < steps.size() && (below += steps[median]) * 2 < count)
-        ++median;
-    out.noise = static_cast<float>(median) / 1.65f / 255.0f;
+    std::size_t quantile = 0;
+    while (quantile < steps.size() && (below += steps[quantile]) * 20 < 7 * count)
+        ++quantile;
+    out.noise = static_cast<float>(quantile) / 1.11f / 255.0f;
     return out;
 }
 

@@ -33,7 +33,7 @@ struct PictureTone {
     float noise = 0.0f;         ///< standard deviation of sRGB values, shares of full
 };
 
-/// Of a whole picture, every few pixels: surfaces send back 30 % of the light on the whole.
+/// Of a whole picture, every few pixels: surfaces send back a third of the light on the whole.
 [[nodiscard]] PictureTone picture_tone(const imaging::Image& picture);
 
 /// Direction and contrast from the places, each group with a colour of its own; level and tint of

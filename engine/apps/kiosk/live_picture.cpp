@@ -118,13 +118,31 @@ void LivePicture::draw_mirror(std::span<WornMeshes* const> worn, float scale) {
         scene_.background.picture = picture_;
         scene_.background.depth = depth_;
         scene_.background.depth_tolerance = kTolerance_m;
-        scene_.background.noise = tone_.noise;
+        // A smaller picture is averaged over more of the camera's pixels.
+        scene_.background.noise = tone_.noise * std::min(scale, 1.0f);
         scene_.background.noise_seed = sequence_;
         scene_.lighting = lighting_of(light_);
     } else {
         scene_.lighting = render::studio_lighting(scene_.camera);
     }
     renderer_.draw(scene_);
+}
+
+imaging::Image LivePicture::cloth_mask(std::span<WornMeshes* const> worn) {
+    imaging::Image black{width_, height_, {}};
+    black.pixels.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4,
+                        0);
+    const render::TextureId nothing = renderer_.add_texture(black, false);
+    draw_mirror(worn, 1.0f);
+    for (render::Instance& instance : scene_.instances)
+        if (instance.draw == render::Instance::Draw::receiver)
+            instance.draw = render::Instance::Draw::occluder;
+    scene_.background.picture = nothing;
+    scene_.background.noise = 0.0f;
+    scene_.lighting.sky = scene_.lighting.ground = Vec3f::Constant(100.0f);
+    renderer_.draw(scene_);
+    renderer_.remove_texture(nothing);
+    return renderer_.read();
 }
 
 void LivePicture::draw_studio(const WornMeshes& worn, float azimuth_deg, const render::Box& box,

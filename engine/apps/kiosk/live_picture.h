@@ -38,6 +38,8 @@ class LivePicture {
     /// The camera's view; without colour a room with avatars. `scale`: share of the camera's
     /// resolution. \throw Error
     void draw_mirror(std::span<WornMeshes* const> worn, float scale);
+    /// White where cloth covers the camera's picture, in its resolution; for measuring it.
+    [[nodiscard]] imaging::Image cloth_mask(std::span<WornMeshes* const> worn);
     /// A studio, seen from `azimuth_deg` round the box. \throw Error
     void draw_studio(const WornMeshes& worn, float azimuth_deg, const render::Box& box, int width,
                      int height);

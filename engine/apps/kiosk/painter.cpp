@@ -84,10 +84,9 @@ class Painter {
         const auto moved = static_cast<float>(0.05 * view_.seconds) * h_;
         const float period = static_cast<float>(count) * (wide + gap);
         for (std::size_t i = 0; i < count && period > 0.0f; ++i) {
-            float x = std::fmod(
-                static_cast<float>(i) * (wide + gap) + period - std::fmod(moved, period), period);
-            for (; x > -wide - gap; x -= period)
-                if (x < w_) garment(view_.carousel[i], {x, row, wide, tall}, false);
+            float x = static_cast<float>(i) * (wide + gap) - std::fmod(moved, period) - period;
+            for (; x < w_; x += period)
+                if (x > -wide) garment(view_.carousel[i], {x, row, wide, tall}, false);
         }
         canvas_.paragraph({0.5f * w_, 0.10f * h_}, sizes_.body.width, texts_[Text::attract_title],
                           title());
@@ -107,17 +106,40 @@ class Painter {
         }
     }
 
+    // Sentences above the buttons where there is room, else below: hands decide where those are.
+    [[nodiscard]] float beside_buttons(float needed) const {
+        float top = h_;
+        float bottom = 0.0f;
+        for (const Button& button : view_.buttons) {
+            top = std::min(top, button.rect.y);
+            bottom = std::max(bottom, button.rect.y + button.rect.height);
+        }
+        const float above = top - sizes_.text - needed;
+        if (above >= sizes_.margin) return std::min(above, 0.07f * h_);
+        return std::min(bottom + sizes_.text, h_ - sizes_.margin - needed);
+    }
+
     void consent() {
-        float y = std::max(0.07f * h_, sizes_.margin);
+        const std::array<Text, 4> asked = {Text::consent_camera, Text::consent_measure,
+                                           Text::consent_kept, Text::consent_network};
+        const float wide = 0.94f * sizes_.body.width;
+        float needed = paragraph_height(texts_[Text::consent_title], sizes_.body.width, title()) +
+                       1.8f * sizes_.text;
+        for (const Text words : asked)
+            needed += paragraph_height(texts_[words], wide, line()) + 0.4f * sizes_.text;
+        float y = beside_buttons(needed);
         y += canvas_.paragraph({0.5f * w_, y}, sizes_.body.width, texts_[Text::consent_title],
                                title());
-        y += 0.5f * sizes_.text;
-        for (const Text words : {Text::consent_camera, Text::consent_measure, Text::consent_kept,
-                                 Text::consent_network})
-            y += canvas_.paragraph({0.5f * w_, y}, 0.94f * sizes_.body.width, texts_[words],
-                                   line()) +
-                 0.4f * sizes_.text;
-        hint(y + 0.5f * sizes_.text);
+        y += 0.3f * sizes_.text;
+        for (const Text words : asked)
+            y +=
+                canvas_.paragraph({0.5f * w_, y}, wide, texts_[words], line()) + 0.4f * sizes_.text;
+        hint(y);
+    }
+
+    [[nodiscard]] float paragraph_height(const std::string& words, float width,
+                                         TextStyle style) const {
+        return canvas_.paragraph_height(width, words, style);
     }
 
     void hint(float y) {
@@ -169,30 +191,31 @@ class Painter {
     }
 
     void mirror() {
-        // The chosen garment between its neighbours, at the head of the screen.
-        const float tall = 0.115f * h_;
+        // The chosen garment between its neighbours, at the foot of the screen.
+        const float tall = 0.10f * h_;
         const float wide = 0.75f * tall;
+        const float words_y = h_ - sizes_.margin - 1.9f * sizes_.text;
         const auto count = static_cast<int>(view_.carousel.size());
         const int beside = std::min((count - 1) / 2, w_ > h_ ? 3 : 2);
         if (view_.screen == ScreenName::frozen) {
             heading(texts_[Text::frozen_title], sizes_.margin);
         } else if (count > 0) {
+            const float middle = words_y - 0.55f * sizes_.text - 0.5f * tall;
             for (int i = -beside; i <= beside; ++i) {
                 const int index = (static_cast<int>(view_.chosen) + i + count) % count;
                 const float scale = i == 0 ? 1.0f : 0.72f;
-                const Vec2f centre(0.5f * w_ + static_cast<float>(i) * 0.95f * wide,
-                                   sizes_.margin + 0.5f * tall);
+                const Vec2f centre(0.5f * w_ + static_cast<float>(i) * 0.95f * wide, middle);
                 garment(view_.carousel[static_cast<std::size_t>(index)],
                         {centre.x() - 0.5f * scale * wide, centre.y() - 0.5f * scale * tall,
                          scale * wide, scale * tall},
                         i == 0);
             }
-            heading(view_.carousel[view_.chosen].name, sizes_.margin + tall + 0.25f * sizes_.text);
+            heading(view_.carousel[view_.chosen].name, sizes_.margin);
         }
         if (view_.comparing)
-            canvas_.fill({0.5f * w_ - 2.0f, 0.22f * h_, 4.0f, 0.68f * h_}, {255, 255, 255, 160});
+            canvas_.fill({0.5f * w_ - 2.0f, 0.1f * h_, 4.0f, 0.7f * h_}, {255, 255, 255, 160});
         const std::string& words = view_.note.empty() ? view_.advice : view_.note;
-        if (!words.empty()) heading(words, h_ - sizes_.margin - 1.9f * sizes_.text);
+        if (!words.empty()) heading(words, words_y);
     }
 
     // One line on a panel, centred.
@@ -210,16 +233,18 @@ class Painter {
     }
 
     void setup() {
-        const float tall =
-            static_cast<float>(view_.setup.size()) * 1.7f * sizes_.text + 2.2f * sizes_.title;
+        const float wide = w_ - 4.0f * sizes_.margin;
+        const TextStyle style{sizes_.text, kWhite, Align::start, false};
+        float tall = 1.8f * sizes_.title + sizes_.margin;
+        for (const std::string& words : view_.setup)
+            tall += canvas_.paragraph_height(wide, words, style);
         canvas_.fill({sizes_.margin, sizes_.margin, w_ - 2.0f * sizes_.margin, tall}, kPanel,
                      0.5f * sizes_.text);
         float y = 1.5f * sizes_.margin;
         canvas_.text({0.5f * w_, y}, texts_[Text::setup_title], title());
         y += 1.5f * sizes_.title;
         for (const std::string& words : view_.setup)
-            y += canvas_.paragraph({2.0f * sizes_.margin, y}, w_ - 4.0f * sizes_.margin, words,
-                                   {sizes_.text, kWhite, Align::start, false});
+            y += canvas_.paragraph({2.0f * sizes_.margin, y}, wide, words, style);
         // Where a person on the mark stands.
         const std::array<Vec2f, 2> upright = {Vec2f(0.5f * w_, 0.1f * h_),
                                               Vec2f(0.5f * w_, 0.97f * h_)};
@@ -268,12 +293,20 @@ class Painter {
         const bool rested = button.action == view_.rested_on;
         const bool focused = view_.focus && *view_.focus == button.action;
         const float round = 0.5f * r.height;
-        canvas_.fill(r, button.action == Action::agree ? Ink{38, 92, 70, 232} : kButton, round);
+        // Over the picture buttons step back until a hand is raised.
+        const bool over = shows_picture(view_.screen);
+        const float shown = over ? 0.35f + 0.65f * view_.attention : 1.0f;
+        const auto faded = [&](Ink ink) {
+            ink.alpha = static_cast<std::uint8_t>(shown * static_cast<float>(ink.alpha));
+            return ink;
+        };
+        canvas_.fill(r, faded(button.action == Action::agree ? Ink{38, 92, 70, 232} : kButton),
+                     round);
         if (rested && view_.progress > 0.0f) {
             const float filled = std::max(r.height, view_.progress * r.width);
             canvas_.fill({r.x, r.y, filled, r.height}, {244, 186, 96, 150}, round);
         }
-        canvas_.outline(r, rested || focused ? kAccent : Ink{255, 255, 255, 110},
+        canvas_.outline(r, rested || focused ? kAccent : faded({255, 255, 255, 110}),
                         (rested || focused ? 0.05f : 0.025f) * r.height, round);
         TextStyle style{sizes_.text, kWhite, Align::middle, true};
         const std::string words = words_of(button.action);

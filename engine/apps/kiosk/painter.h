@@ -25,6 +25,7 @@ struct ScreenView {
     Action rested_on = Action::invalid;
     float progress = 0.0f; ///< of the dwell
     std::optional<Action> focus;
+    float attention = 1.0f;   ///< [0, 1]: a hand is raised, or was a moment ago
     std::vector<Vec2f> hands; ///< raised ones, pixels
     bool declined = false;
     bool far_away = false; ///< somebody is there, but not on the mark

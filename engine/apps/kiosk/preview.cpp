@@ -21,7 +21,7 @@ void preview(const KioskConfig& config, const std::string& screen,
     const Texts texts = Texts::load(config.language);
     Display display(config, true);
     for (const auto& source : garment_sources(config.garments, config.garments_folder)) {
-        const Article article = read_article(source);
+        const Article article = read_article_head(source);
         CarouselItem item{render::PictureId::none, article.name};
         if (!article.thumbnail.empty())
             item.thumbnail = display.screen().add_picture(imaging::load_image(article.thumbnail));

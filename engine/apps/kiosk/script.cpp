@@ -21,11 +21,17 @@ ScriptStep read_step(JsonObject& json) {
         step.kind = Kind::act;
         step.action = action_from_name(json.text("act"));
         if (step.action == Action::invalid) throw json.error("act", "is no action of the mirror");
+        step.person = static_cast<std::uint32_t>(json.integer_or("person", 1, 2, 1));
     }
     if (json.has("picture")) {
         ++kinds;
         step.kind = Kind::picture;
         step.name = json.file_name("picture");
+    }
+    if (json.has("mask")) {
+        ++kinds;
+        step.kind = Kind::mask;
+        step.name = json.file_name("mask");
     }
     if (json.has("fault")) {
         ++kinds;
@@ -39,7 +45,7 @@ ScriptStep read_step(JsonObject& json) {
         step.kind = json.boolean("quit") ? Kind::quit : Kind::invalid;
     }
     if (kinds != 1 || step.kind == Kind::invalid)
-        throw json.error("", "a step has one of act, picture, fault and quit");
+        throw json.error("", "a step has one of act, picture, mask, fault and quit");
     json.finish();
     return step;
 }

@@ -12,11 +12,13 @@
 namespace toile::apps::kiosk {
 
 struct ScriptStep {
-    enum class Kind { invalid, act, picture, fault, quit };
+    /// mask: white where cloth covers the camera picture, of the camera's size.
+    enum class Kind { invalid, act, picture, mask, fault, quit };
     std::uint64_t frame = 0; ///< of the mirror, from 0
     Kind kind = Kind::invalid;
     Action action = Action::invalid;
-    std::string name; ///< of a picture without its ending; of a fault
+    std::uint32_t person = 1; ///< who acts: the first, or the second who is there
+    std::string name;         ///< of a picture without its ending; of a fault
 };
 
 /// Faults that a script can inject: "camera", "picture", "disk", "crash", "stall".

@@ -7,7 +7,8 @@ namespace toile::apps::kiosk {
 namespace {
 
 constexpr float kFarthest_m = 4.2f; // from the camera: whoever passes behind is not asked
-constexpr float kForward_m = 0.30f; // a hand so far before its shoulder points
+constexpr float kForward_m = 0.34f; // a hand so far before its shoulder points
+constexpr float kAboveHips_m = 0.05f;
 constexpr float kFingers_m = 0.09f; // from the wrist to the middle of the hand
 constexpr float kSure = 0.15f;      // confidence of a joint
 
@@ -145,10 +146,13 @@ std::vector<Hand> Visitors::hands(const ToScreen& to_screen) const {
             const Vec3f hand = to + kFingers_m * (to - from).normalized();
             const float* r = shopper.frame.joints[0].rotation;
             const Vec3f forward = Quatf(r[3], r[0], r[1], r[2]) * Vec3f::UnitZ();
+            const Vec3f hips = place(shopper.frame, Joint::hips);
             const float before = forward.dot(hand - place(shopper.frame, shoulder));
             const auto pixel = to_screen(hand);
             if (!pixel) continue;
-            out.push_back({shopper.id, *pixel, to.y() > from.y() + 0.02f || before > kForward_m});
+            out.push_back({shopper.id, *pixel,
+                           to.y() > from.y() + 0.02f ||
+                               (before > kForward_m && to.y() > hips.y() + kAboveHips_m)});
         }
     }
     return out;

@@ -91,14 +91,18 @@ struct Outcome {
     std::string why; ///< of a crash or stall
 };
 
+// `down_s`: since when there is no mirror; 0 at the first start.
 Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOptions& options,
-                 const RestartPolicy& policy) {
+                 const RestartPolicy& policy, double down_s) {
     Child child(arguments);
     double sign_s = pipeline::wall_seconds();
     bool signed_once = false;
     for (;;) {
         if (child.alive_sign()) {
             sign_s = pipeline::wall_seconds();
+            if (!signed_once && down_s > 0.0)
+                log::info("the mirror is up again after " +
+                          std::to_string(static_cast<int>(1000.0 * (sign_s - down_s))) + " ms");
             signed_once = true;
         }
         int status = 0;
@@ -130,12 +134,14 @@ Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOption
 int watch(const std::vector<std::string>& arguments, const WatchdogOptions& options) {
     host::catch_interrupts();
     RestartPolicy policy;
+    double down_s = 0.0;
     for (;;) {
         std::vector<std::string> words = arguments;
         words.insert(words.end(), {"--restarts", std::to_string(policy.restarts())});
         if (policy.safe()) words.emplace_back("--safe");
-        const Outcome outcome = run_once(words, options, policy);
+        const Outcome outcome = run_once(words, options, policy, down_s);
         if (outcome.over) return outcome.status;
+        down_s = pipeline::wall_seconds();
         if (outcome.why.empty()) {
             log::info("the mirror leaves safe mode");
             policy.leave_safe_mode();
