@@ -144,6 +144,7 @@ bool Kiosk::frame() {
     draw_time_.add(ended_s - drawing_s);
     if (fresh_) {
         frame_time_.add(ended_s - began_s);
+        compute_time_.add(drawing_s - began_s);
         if (live_ && clock_offset_s_)
             picture_latency_.add(ended_s - *clock_offset_s_ -
                                  1e-9 * static_cast<double>(people_.timestamp_ns));
@@ -251,9 +252,10 @@ void Kiosk::wear_on(Shopper& shopper, DressResult result) {
     look.choice = result.order.choice;
     look.advice = result.advice;
     look.timestamp_ns = result.timestamp_ns;
+    look.bare = std::move(result.bare);
     look.person = std::move(result.worn);
     look.meshes = std::make_unique<WornMeshes>(display_->picture().renderer(), *look.person,
-                                               look.choice.colour);
+                                               look.choice.colour, look.bare);
     if (!shopper.body.body) shopper.body = result.order.body;
     shopper.looks[result.order.look].reset(); // its meshes first, then its person
     shopper.looks[result.order.look] = std::move(look);
@@ -481,6 +483,7 @@ void Kiosk::write_report() {
     json["seconds"] = last_frame_s_ - first_frame_s_;
     json["longest_gap_s"] = longest_gap_s_;
     put("frame_wall", frame_time_);
+    put("compute_wall", compute_time_);
     put("drawing_wall", draw_time_);
     if (live_) put("latency_garment_state", state_latency_);
     if (live_) put("latency_picture", picture_latency_);

@@ -131,6 +131,7 @@ class Kiosk {
     double metrics_at_s_ = 0.0;
     pipeline::StageClock clock_;
     pipeline::DurationHistogram frame_time_;
+    pipeline::DurationHistogram compute_time_; ///< all but drawing
     pipeline::DurationHistogram state_latency_;
     pipeline::DurationHistogram picture_latency_;
     pipeline::DurationHistogram draw_time_;

@@ -60,8 +60,8 @@ void Kiosk::rebuild_display(const std::string& why) {
     for (Shopper& shopper : visitors_.all())
         for (std::optional<WornLook>& look : shopper.looks)
             if (look)
-                look->meshes = std::make_unique<WornMeshes>(display_->picture().renderer(),
-                                                            *look->person, look->choice.colour);
+                look->meshes = std::make_unique<WornMeshes>(
+                    display_->picture().renderer(), *look->person, look->choice.colour, look->bare);
     if (feed_.up() && camera_frames_ > 0)
         display_->picture().set_camera(feed_.pictures(), feed_.stream());
     note_fault(Fault::picture, texts_.with(Text::picture_lost, {{"why", why}}));
@@ -220,6 +220,11 @@ std::vector<WornMeshes*> Kiosk::worn_meshes(bool second) {
 void Kiosk::draw_picture() {
     LivePicture& picture = display_->picture();
     if (picture.empty()) return;
+    std::vector<LivePicture::Wearer> wearers;
+    for (const Shopper& shopper : visitors_.all())
+        for (const std::optional<WornLook>& look : shopper.looks)
+            if (look && shopper.here) wearers.push_back({look->person.get(), &look->bare});
+    if (fresh_ && feed_.up()) picture.hide_by(feed_.pictures(), wearers);
     const bool two = screens_.comparing() && screens_.now() == ScreenName::mirror;
     for (std::size_t look = 0; look < (two ? 2u : 1u); ++look) {
         picture.draw_mirror(worn_meshes(look == 1), scale_.now());

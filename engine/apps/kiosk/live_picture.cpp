@@ -1,5 +1,6 @@
 #include "apps/kiosk/live_picture.h"
 
+#include "apps/kiosk/bare_parts.h"
 #include "imaging/srgb.h"
 #include "render/views.h"
 
@@ -13,6 +14,8 @@ constexpr float kSameSurface_m = 0.04f; // the body lies so near to what is seen
 constexpr std::size_t kEveryVertex = 5;
 constexpr double kLightTime_s = 0.8;
 constexpr float kTolerance_m = 0.055f;
+constexpr float kHandInCloth_m = 0.03f; // cloth may be drawn so far before a hand that lies on it
+constexpr int kReach = 3;               // pixels between a forearm's vertices, nearly
 
 RigidTransform rigid(const Eigen::Isometry3d& place) {
     return {Quatf(place.linear().cast<float>()).normalized(), place.translation().cast<float>()};
@@ -51,10 +54,22 @@ void LivePicture::erase() {
     width_ = height_ = 0;
     scene_.instances.clear();
     light_ = {};
+    std::fill(hiding_.metres.begin(), hiding_.metres.end(), 0.0f);
     // What was drawn last is drawn over.
     render::Scene nothing;
     nothing.background.kind = render::Background::Kind::color;
     renderer_.draw(nothing);
+}
+
+void LivePicture::hide_by(const pipeline::SensorFrame& frame, std::span<const Wearer> wearers) {
+    if (frame.depth.width != width_ || frame.depth.height != height_) return;
+    hiding_.width = width_;
+    hiding_.height = height_;
+    hiding_.metres.assign(frame.depth.metres.begin(), frame.depth.metres.end());
+    for (const Wearer& wearer : wearers)
+        lift_bare_parts(*wearer.person, *wearer.bare, camera_, place_, frame.depth,
+                        kTolerance_m + kHandInCloth_m, kReach, hiding_);
+    (void)renderer_.update_depth(depth_, hiding_);
 }
 
 std::optional<Vec2f> LivePicture::pixel_of(const Vec3f& world) const {

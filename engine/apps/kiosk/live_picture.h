@@ -26,6 +26,14 @@ class LivePicture {
     /// Overwrites the last camera picture.
     void erase();
 
+    /// What hides cloth in the next picture: the camera's depth with the bare arms of those who
+    /// wear something brought forward. \throw Error
+    struct Wearer {
+        const pipeline::DressedPerson* person = nullptr;
+        const std::vector<std::uint32_t>* bare = nullptr;
+    };
+    void hide_by(const pipeline::SensorFrame& frame, std::span<const Wearer> wearers);
+
     /// Places of a dressed person where the camera sees skin or clothes of it.
     void add_lit_places(const pipeline::DressedPerson& person, const pipeline::SensorFrame& frame,
                         std::vector<LitPlace>& out) const;
@@ -56,6 +64,7 @@ class LivePicture {
     render::Scene scene_;
     render::TextureId picture_ = render::TextureId::none;
     render::TextureId depth_ = render::TextureId::none;
+    imaging::DepthImage hiding_; ///< scratch
     imaging::Intrinsics camera_;
     Eigen::Isometry3d place_ = Eigen::Isometry3d::Identity();
     int width_ = 0;

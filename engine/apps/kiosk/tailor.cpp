@@ -1,6 +1,7 @@
 #include "apps/kiosk/tailor.h"
 
 #include "apps/fitted_body.h"
+#include "apps/kiosk/bare_parts.h"
 #include "apps/plugin_limits.h"
 #include "body/body_file.h"
 #include "core/error.h"
@@ -193,6 +194,7 @@ DressResult Tailor::dressed(DressOrder order) {
             out.worn = std::make_unique<pipeline::DressedPerson>(
                 registry_, services_, out.order.body.body, std::vector{garment}, options, job);
         }
+        out.bare = bare_vertices(*out.worn);
         const auto frame = seen(out.order.person);
         if (!frame) throw Error("the person is gone");
         settle(out, *frame);

@@ -54,6 +54,7 @@ struct DressResult {
     std::unique_ptr<pipeline::DressedPerson> worn;
     std::int64_t timestamp_ns = 0; ///< of the frame it stands in
     SizeAdvice advice;
+    std::vector<std::uint32_t> bare; ///< vertices of arms that the garment does not cover
     std::string error;
 };
 

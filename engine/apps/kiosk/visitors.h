@@ -20,6 +20,7 @@ struct WornLook {
     Choice choice;
     SizeAdvice advice;
     std::int64_t timestamp_ns = 0;
+    std::vector<std::uint32_t> bare; ///< vertices of arms that it does not cover
     std::unique_ptr<pipeline::DressedPerson> person;
     std::unique_ptr<WornMeshes> meshes;
 };

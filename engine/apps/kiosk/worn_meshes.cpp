@@ -61,10 +61,10 @@ void check(render::Status status) {
 } // namespace
 
 WornMeshes::WornMeshes(render::Renderer& renderer, const pipeline::DressedPerson& person,
-                       std::size_t colour)
+                       std::size_t colour, std::span<const std::uint32_t> bare)
     : renderer_(renderer), person_(person) {
     try {
-        add_body();
+        add_body(bare);
         for (const pipeline::WornGarment& garment : person_.garments())
             add_garment(garment, colour);
     } catch (...) {
@@ -82,6 +82,7 @@ void WornMeshes::release() {
         if (mesh != render::MeshId::none) renderer_.remove_mesh(mesh);
     };
     drop(body_);
+    drop(receiver_);
     for (const Surface& surface : surfaces_)
         drop(surface.mesh);
     for (const render::MaterialId material : materials_)
@@ -90,7 +91,7 @@ void WornMeshes::release() {
         renderer_.remove_texture(texture);
 }
 
-void WornMeshes::add_body() {
+void WornMeshes::add_body(std::span<const std::uint32_t> bare) {
     const body::BodyModel& model = person_.body().model();
     render::MeshDescription description;
     description.triangles = model.layout.triangles;
@@ -99,6 +100,17 @@ void WornMeshes::add_body() {
     description.positions = person_.posed().positions;
     description.normals = person_.posed().normals;
     body_ = renderer_.add_mesh(description);
+    std::vector<bool> left_out(model.rest.positions.size());
+    for (const std::uint32_t v : bare)
+        left_out[v] = true;
+    std::vector<Triangle> kept;
+    for (std::size_t i = 0; i < model.layout.triangles.size(); ++i) {
+        const Triangle& t = model.rest.triangles[i];
+        if (!(left_out[t[0]] && left_out[t[1]] && left_out[t[2]]))
+            kept.push_back(model.layout.triangles[i]);
+    }
+    description.triangles = kept;
+    receiver_ = renderer_.add_mesh(description);
     picture_ = renderer_.add_material(render::mannequin_material());
     avatar_ = renderer_.add_material(render::mannequin_material());
     materials_.insert(materials_.end(), {picture_, avatar_});
@@ -138,7 +150,8 @@ void WornMeshes::add_garment(const pipeline::WornGarment& garment, std::size_t c
 }
 
 void WornMeshes::update() {
-    check(renderer_.update_mesh(body_, person_.posed().positions, person_.posed().normals));
+    for (const render::MeshId mesh : {body_, receiver_})
+        check(renderer_.update_mesh(mesh, person_.posed().positions, person_.posed().normals));
     std::size_t next = 0;
     for (const pipeline::WornGarment& garment : person_.garments())
         for (const auto& surface : garment.surfaces) {
@@ -150,8 +163,8 @@ void WornMeshes::update() {
 
 void WornMeshes::add_to(render::Scene& scene, BodyDrawn body) const {
     render::Instance instance;
-    instance.mesh = body_;
     const bool seen = body == BodyDrawn::avatar;
+    instance.mesh = seen ? body_ : receiver_;
     instance.material = seen ? avatar_ : picture_;
     instance.draw = seen ? render::Instance::Draw::visible : render::Instance::Draw::receiver;
     instance.casts_shadow = seen; // the picture has the body's own shadows already

@@ -4,7 +4,8 @@
 #include "pipeline/dressed_person.h"
 #include "render/renderer.h"
 
-#include <string>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace toile::apps::kiosk {
@@ -12,17 +13,19 @@ namespace toile::apps::kiosk {
 /// How the body is drawn.
 enum class BodyDrawn {
     invalid,
-    picture, ///< not at all: it hides cloth behind it, and takes the cloth's shadow
+    /// Not at all: it hides cloth behind it, and takes the cloth's shadow. Without bare arms, which
+    /// the camera's depth shows better than the tracked body.
+    picture,
     avatar,
 };
 
 /// Not movable. All calls on the renderer's thread.
 class WornMeshes {
   public:
-    /// Uploads; `colour` is an index into each garment's colourways. Both must outlive this.
-    /// \throw Error
+    /// Uploads; `colour` is an index into each garment's colourways, `bare` are vertices of arms
+    /// that no garment covers. Renderer and person must outlive this. \throw Error
     WornMeshes(render::Renderer& renderer, const pipeline::DressedPerson& person,
-               std::size_t colour);
+               std::size_t colour, std::span<const std::uint32_t> bare);
     ~WornMeshes();
     WornMeshes(const WornMeshes&) = delete;
     WornMeshes& operator=(const WornMeshes&) = delete;
@@ -33,13 +36,14 @@ class WornMeshes {
     void add_to(render::Scene& scene, BodyDrawn body) const;
 
   private:
-    void add_body();
+    void add_body(std::span<const std::uint32_t> bare);
     void add_garment(const pipeline::WornGarment& garment, std::size_t colour);
     void release();
 
     render::Renderer& renderer_;
     const pipeline::DressedPerson& person_;
     render::MeshId body_ = render::MeshId::none;
+    render::MeshId receiver_ = render::MeshId::none; ///< the body without bare arms
     render::MaterialId picture_ = render::MaterialId::none;
     render::MaterialId avatar_ = render::MaterialId::none;
     struct Surface {
