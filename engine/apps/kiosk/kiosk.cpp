@@ -23,6 +23,9 @@ constexpr double kLookEvery_s = 1.0; // at the garments' files
 constexpr double kNoteToShopper_s = 6.0;
 constexpr std::size_t kMostNotes = 3;
 constexpr double kClockJump_s = 5.0;
+constexpr double kLongest_s = 0.3; // that clothes walk through between two frames
+// A late frame must not make the next one later: two steps of the cloth.
+constexpr double kLongestLive_s = 0.085;
 
 std::vector<Article> read_articles(const KioskConfig& config) {
     std::vector<Article> out;
@@ -99,6 +102,8 @@ bool Kiosk::frame() {
     if (!display_->poll() || quit_ || host::interrupt_flag()) return false;
     if (run_.frames > 0 && number_ >= run_.frames) return false;
     fresh_ = screens_.now() != ScreenName::safe && feed_.next(people_, now_s_);
+    if (fresh_) source_time_.add(pipeline::wall_seconds() - began_s);
+    picture_s_ = 0.0;
     if (feed_.ended()) return false;
     if (live_ && !fresh_ && feed_.up() && screens_.now() != ScreenName::safe) {
         // The camera has no new picture yet.
@@ -130,9 +135,10 @@ bool Kiosk::frame() {
     for (const Effect effect : screens_.take_effects())
         perform(effect, visitors_.first());
     take_results();
-    if (fresh_ && screens_.now() == ScreenName::mirror) visitors_.step(clock_);
+    if (fresh_ && screens_.now() == ScreenName::mirror)
+        visitors_.step(clock_, live_ ? kLongestLive_s : kLongest_s);
     if (fresh_ && live_ && clock_offset_s_)
-        state_latency_.add(pipeline::wall_seconds() - *clock_offset_s_ -
+        state_latency_.add(pipeline::wall_seconds() - picture_s_ - *clock_offset_s_ -
                            1e-9 * static_cast<double>(people_.timestamp_ns));
     const double drawing_s = pipeline::wall_seconds();
     try {
@@ -141,10 +147,10 @@ bool Kiosk::frame() {
         rebuild_display(e.what());
     }
     const double ended_s = pipeline::wall_seconds();
-    draw_time_.add(ended_s - drawing_s);
+    draw_time_.add(ended_s - drawing_s + picture_s_);
     if (fresh_) {
         frame_time_.add(ended_s - began_s);
-        compute_time_.add(drawing_s - began_s);
+        compute_time_.add(drawing_s - began_s - picture_s_);
         if (live_ && clock_offset_s_)
             picture_latency_.add(ended_s - *clock_offset_s_ -
                                  1e-9 * static_cast<double>(people_.timestamp_ns));
@@ -194,6 +200,12 @@ void Kiosk::take_frame(double dt_s) {
     visitors_.see(people_, feed_, eye.translation().cast<float>(), dt_s);
     visitors_.order_waiting(articles_);
     if (measuring_ == Measuring::looking) turn_to_measure(dt_s);
+    const double picture_began_s = pipeline::wall_seconds();
+    give_picture(pictures, dt_s);
+    picture_s_ = pipeline::wall_seconds() - picture_began_s;
+}
+
+void Kiosk::give_picture(const pipeline::SensorFrame& pictures, double dt_s) {
     const bool seen = shows_picture(screens_.now());
     if (seen || screens_.now() == ScreenName::consent || screens_.now() == ScreenName::measure)
         display_->picture().set_camera(pictures, feed_.stream());
@@ -484,6 +496,7 @@ void Kiosk::write_report() {
     json["longest_gap_s"] = longest_gap_s_;
     put("frame_wall", frame_time_);
     put("compute_wall", compute_time_);
+    put("source_wall", source_time_);
     put("drawing_wall", draw_time_);
     if (live_) put("latency_garment_state", state_latency_);
     if (live_) put("latency_picture", picture_latency_);

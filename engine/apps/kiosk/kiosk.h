@@ -58,6 +58,7 @@ class Kiosk {
     void take_script();
     void inject(const std::string& fault);
     void take_frame(double dt_s);
+    void give_picture(const pipeline::SensorFrame& pictures, double dt_s);
     void take_results();
     void take_changes();
     void act(Action action, std::uint32_t person);
@@ -131,7 +132,9 @@ class Kiosk {
     double metrics_at_s_ = 0.0;
     pipeline::StageClock clock_;
     pipeline::DurationHistogram frame_time_;
-    pipeline::DurationHistogram compute_time_; ///< all but drawing
+    pipeline::DurationHistogram compute_time_; ///< all but drawing and what the picture needs
+    pipeline::DurationHistogram source_time_;  ///< camera and tracker
+    double picture_s_ = 0.0; ///< of this frame: pictures given to the renderer, light
     pipeline::DurationHistogram state_latency_;
     pipeline::DurationHistogram picture_latency_;
     pipeline::DurationHistogram draw_time_;

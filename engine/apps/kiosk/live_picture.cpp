@@ -5,6 +5,7 @@
 #include "render/views.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace toile::apps::kiosk {
@@ -24,7 +25,41 @@ RigidTransform rigid(const Eigen::Isometry3d& place) {
 } // namespace
 
 LivePicture::LivePicture(render::Context& context)
-    : renderer_(context, {640, 480, render::Quality::fast}) {}
+    : renderer_(context, {640, 480, render::Quality::fast}) {
+    warm_up();
+}
+
+// The driver compiles a shader when it is first drawn with: a second that no shopper shall wait.
+void LivePicture::warm_up() {
+    const imaging::Image grey{2, 2, std::vector<std::uint8_t>(16, 128)};
+    const imaging::DepthImage far_away{2, 2, std::vector<float>(4, 9.0f)};
+    const std::array<Vec3f, 3> corners = {Vec3f(-1, -1, -2), Vec3f(1, -1, -2), Vec3f(0, 1, -2)};
+    const std::array<Vec2f, 3> texcoords = {Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)};
+    const std::array<Triangle, 1> triangle = {Triangle{0, 1, 2}};
+    render::Material material;
+    material.base_color_texture = renderer_.add_texture(grey, false);
+    material.normal_texture = renderer_.add_texture(grey, true);
+    const render::TextureId depth = renderer_.add_depth(far_away);
+    render::Instance cloth;
+    cloth.mesh = renderer_.add_mesh({triangle, {}, texcoords, {}, corners, {}});
+    cloth.material = renderer_.add_material(material);
+    render::Instance body = cloth;
+    body.material = renderer_.add_material({});
+    body.draw = render::Instance::Draw::receiver;
+    render::Scene scene;
+    scene.instances = {cloth, body};
+    scene.background.kind = render::Background::Kind::camera;
+    scene.background.picture = material.base_color_texture;
+    scene.background.depth = depth;
+    scene.background.noise = 0.01f;
+    renderer_.draw(scene);
+    renderer_.remove_mesh(cloth.mesh);
+    renderer_.remove_material(cloth.material);
+    renderer_.remove_material(body.material);
+    for (const render::TextureId texture :
+         {material.base_color_texture, material.normal_texture, depth})
+        renderer_.remove_texture(texture);
+}
 
 void LivePicture::set_camera(const pipeline::SensorFrame& frame,
                              const pipeline::SensorStream& stream) {

@@ -60,6 +60,8 @@ class LivePicture {
     [[nodiscard]] int camera_height() const { return height_; }
 
   private:
+    void warm_up();
+
     render::Renderer renderer_;
     render::Scene scene_;
     render::TextureId picture_ = render::TextureId::none;

@@ -117,8 +117,7 @@ void Visitors::order_waiting(const std::vector<Article>& articles) {
             if (shopper.waiting[look]) order(shopper, look, articles);
 }
 
-void Visitors::step(pipeline::StageClock& clock) {
-    constexpr double kLongest_s = 0.3; // a longer gap is not walked through
+void Visitors::step(pipeline::StageClock& clock, double longest_s) {
     for (Shopper& shopper : shoppers_) {
         if (!shopper.here) continue;
         for (std::optional<WornLook>& look : shopper.looks) {
@@ -126,7 +125,7 @@ void Visitors::step(pipeline::StageClock& clock) {
             const double dt_s =
                 1e-9 * static_cast<double>(shopper.frame.timestamp_ns - look->timestamp_ns);
             look->timestamp_ns = shopper.frame.timestamp_ns;
-            const double usable = dt_s > 0.0 ? std::min(dt_s, kLongest_s) : 1.0 / 30.0;
+            const double usable = dt_s > 0.0 ? std::min(dt_s, longest_s) : 1.0 / 30.0;
             look->person->step(on_body(shopper.frame, look->person->body().model()), usable, clock);
         }
     }

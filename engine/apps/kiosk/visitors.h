@@ -68,8 +68,8 @@ class Visitors {
     /// Asks the tailor for what a shopper wants to wear, now or once their shape is known.
     void order(Shopper& shopper, std::size_t look, const std::vector<Article>& articles);
     void order_waiting(const std::vector<Article>& articles);
-    /// Moves everybody's clothes on to the frame.
-    void step(pipeline::StageClock& clock);
+    /// Moves everybody's clothes on to the frame; a gap longer than `longest_s` counts as that.
+    void step(pipeline::StageClock& clock, double longest_s);
 
     /// Raised hands, pixels of the screen.
     [[nodiscard]] std::vector<Hand> hands(const ToScreen& to_screen) const;
