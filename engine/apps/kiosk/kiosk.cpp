@@ -22,6 +22,7 @@ constexpr double kMetricsEvery_s = 5.0;
 constexpr double kLookEvery_s = 1.0; // at the garments' files
 constexpr double kNoteToShopper_s = 6.0;
 constexpr std::size_t kMostNotes = 3;
+constexpr std::uint64_t kWarmUpFrame = 1; // the first picture is out
 constexpr double kClockJump_s = 5.0;
 constexpr double kLongest_s = 0.3; // that clothes walk through between two frames
 // A late frame must not make the next one later: two steps of the cloth.
@@ -158,6 +159,7 @@ bool Kiosk::frame() {
     }
     clock_.end_frame();
     beat();
+    if (number_ == kWarmUpFrame) display_->picture().warm_up();
     ++number_;
     ++metrics_.frames;
     write_metrics(false);

@@ -25,11 +25,8 @@ RigidTransform rigid(const Eigen::Isometry3d& place) {
 } // namespace
 
 LivePicture::LivePicture(render::Context& context)
-    : renderer_(context, {640, 480, render::Quality::fast}) {
-    warm_up();
-}
+    : renderer_(context, {640, 480, render::Quality::fast}) {}
 
-// The driver compiles a shader when it is first drawn with: a second that no shopper shall wait.
 void LivePicture::warm_up() {
     const imaging::Image grey{2, 2, std::vector<std::uint8_t>(16, 128)};
     const imaging::DepthImage far_away{2, 2, std::vector<float>(4, 9.0f)};

@@ -59,9 +59,11 @@ class LivePicture {
     [[nodiscard]] int camera_width() const { return width_; }
     [[nodiscard]] int camera_height() const { return height_; }
 
-  private:
+    /// The driver compiles a shader when it is first drawn with: a second that no shopper shall
+    /// wait. Call it while nobody is there.
     void warm_up();
 
+  private:
     render::Renderer renderer_;
     render::Scene scene_;
     render::TextureId picture_ = render::TextureId::none;

@@ -6,6 +6,7 @@
 #include "host/job.h"
 #include "pipeline/stage_clock.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -23,6 +24,7 @@ namespace toile::apps::kiosk {
 namespace {
 
 constexpr int kPoll_ms = 50;
+constexpr double kEarly_s = 10.0;
 
 /// One run of the mirror.
 class Child {
@@ -96,6 +98,7 @@ Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOption
                  const RestartPolicy& policy, double down_s) {
     Child child(arguments);
     double sign_s = pipeline::wall_seconds();
+    double first_sign_s = sign_s;
     bool signed_once = false;
     for (;;) {
         if (child.alive_sign()) {
@@ -103,6 +106,7 @@ Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOption
             if (!signed_once && down_s > 0.0)
                 log::info("the mirror is up again after " +
                           std::to_string(static_cast<int>(1000.0 * (sign_s - down_s))) + " ms");
+            if (!signed_once) first_sign_s = sign_s;
             signed_once = true;
         }
         int status = 0;
@@ -116,7 +120,9 @@ Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOption
         }
         const double silent_s = pipeline::wall_seconds() - sign_s;
         if (host::interrupt_flag()) return {true, child.end(SIGTERM) == 0 ? 0 : 1, ""};
-        if (silent_s > (signed_once ? options.stall_s : options.start_s)) {
+        const bool early = pipeline::wall_seconds() - first_sign_s < kEarly_s;
+        const double stall_s = early ? std::max(options.stall_s, options.early_s) : options.stall_s;
+        if (silent_s > (signed_once ? stall_s : options.start_s)) {
             child.end(SIGKILL);
             return {false, 1,
                     "it gave no sign of life for " +
