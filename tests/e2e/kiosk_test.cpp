@@ -215,7 +215,7 @@ TEST_F(KioskTest, ASnapshotIsKeptOnRequestOnlyAndWithoutButtons) {
 
 TEST_F(KioskTest, TheWatchdogStartsACrashedAndAStalledMirrorAgain) {
     for (const char* fault : {"crash", "stall"}) {
-        configure(R"("people": 1, "metrics": "kiosk.prom", "stall_s": 1)");
+        configure(R"("people": 1, "metrics": "kiosk.prom", "stall_s": 3)");
         write("visit.json", R"({"schema": 1, "steps": [{"frame": 6, "fault": ")" +
                                 std::string(fault) + R"("}]})");
         const auto run = kiosk({"--realtime", "--frames", "12", "--script", at("visit.json")});
