@@ -237,7 +237,7 @@ void Kiosk::take_results() {
         Shopper* shopper = visitors_.first();
         const bool usable = measured->error.empty() && shopper != nullptr;
         measuring_ = usable ? Measuring::done : Measuring::failed;
-        if (usable) shopper->body = measured->body;
+        if (usable) shopper->measurements = measured->body.body->model().measurements;
         if (!measured->error.empty()) log::warning(measured->error);
     }
     for (DressResult& result : tailor_.take_dressed()) {

@@ -145,7 +145,8 @@ Tailor::garment_of(const DressOrder& order, const body::BodyModel& body, SizeAdv
         size = &kept.package->sizes.at(order.choice.size - 1);
         advice.chosen = true;
     } else if (kept.package->sizes.size() > 1) {
-        const garment::SizeChoice choice = garment::choose_size(*kept.package, body.measurements);
+        const garment::SizeChoice choice = garment::choose_size(
+            *kept.package, order.measurements.empty() ? body.measurements : order.measurements);
         size = &kept.package->sizes[choice.index];
         if (choice.between) advice.other = kept.package->sizes[*choice.between].entry.name;
     }
@@ -185,7 +186,7 @@ DressResult Tailor::dressed(DressOrder order) {
         out.order.body = body_of(out.order);
         const body::BodyModel& model = out.order.body.body->model();
         const auto garment = garment_of(out.order, model, out.advice);
-        out.advice.measured = out.order.body.measured;
+        out.advice.measured = !out.order.measurements.empty();
         pipeline::DressingOptions options;
         options.limits = limits_;
         {

@@ -43,8 +43,9 @@ struct DressOrder {
     std::size_t look = 0;     ///< 0, or 1 of two side by side
     Choice choice;
     Article article;
-    ShopperBody body;  ///< or, when it has none:
-    std::string model; ///< the tracker's shape
+    std::map<std::string, double> measurements; ///< of a turn; empty: those of the body worn on
+    ShopperBody body;                           ///< or, when it has none:
+    std::string model;                          ///< the tracker's shape
     std::vector<double> coefficients;
 };
 

@@ -76,6 +76,7 @@ void Visitors::erase() {
     for (Shopper& shopper : shoppers_) {
         std::fill(shopper.coefficients.begin(), shopper.coefficients.end(), 0.0);
         shopper.frame = {};
+        shopper.measurements.clear();
     }
     shoppers_.clear();
     tailor_.forget();
@@ -105,6 +106,7 @@ void Visitors::order(Shopper& shopper, std::size_t look, const std::vector<Artic
     order.look = look;
     order.choice = shopper.wanted[look];
     order.article = articles.at(order.choice.article);
+    order.measurements = shopper.measurements;
     order.body = shopper.body;
     order.model = shopper.model;
     order.coefficients = shopper.coefficients;

@@ -33,9 +33,10 @@ struct Shopper {
     pipeline::BodyFrame frame;
     std::string model; ///< of the tracker's shape
     std::vector<double> coefficients;
-    ShopperBody body;
-    std::array<Choice, 2> wanted;  ///< of each look
-    std::array<bool, 2> waiting{}; ///< to be ordered once the shape is known
+    ShopperBody body; ///< what clothes are worn on: the tracker's shape, which its joints fit
+    std::map<std::string, double> measurements; ///< of the turn, for the size; or empty
+    std::array<Choice, 2> wanted;               ///< of each look
+    std::array<bool, 2> waiting{};              ///< to be ordered once the shape is known
     std::array<std::optional<WornLook>, 2> looks;
 };
 

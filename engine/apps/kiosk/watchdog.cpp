@@ -24,7 +24,7 @@ namespace toile::apps::kiosk {
 namespace {
 
 constexpr int kPoll_ms = 50;
-constexpr double kEarly_s = 10.0;
+constexpr double kEarly_s = 30.0;
 
 /// One run of the mirror.
 class Child {

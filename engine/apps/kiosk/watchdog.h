@@ -9,7 +9,7 @@ namespace toile::apps::kiosk {
 struct WatchdogOptions {
     double stall_s = 3.0;  ///< no sign of life for so long
     double start_s = 60.0; ///< the same before the first sign: plugins and garments are read
-    double early_s = 5.0;  ///< at least this in the first ten seconds: shaders are compiled
+    double early_s = 15.0; ///< at least this in the first half minute: shaders are compiled
 };
 
 /// Runs `arguments` (program first) with --heartbeat FD, --restarts N and, after too many crashes,
