@@ -24,6 +24,7 @@ void add_measure_commands(CLI::App& app, const GlobalOptions& options);
 void add_catalogue_commands(CLI::App& app, const GlobalOptions& options);
 void add_report_commands(CLI::App& app, const GlobalOptions& options);
 void add_bench_commands(CLI::App& app, const GlobalOptions& options);
+void add_kiosk_commands(CLI::App& app, const GlobalOptions& global);
 
 /// The subcommands that plugins add (toile.tool/1), in their groups; after all others. A manifest
 /// whose words are taken is passed over with a warning. `words` are the program's arguments, looked

@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
     toile::apps::add_catalogue_commands(app, options);
     toile::apps::add_report_commands(app, options);
     toile::apps::add_bench_commands(app, options);
+    toile::apps::add_kiosk_commands(app, options);
     toile::apps::add_tool_commands(app, options, {argv, static_cast<std::size_t>(argc)});
     app.parse_complete_callback([&] {
         if (options.verbose) toile::log::set_level(toile::log::Level::debug);

@@ -75,7 +75,7 @@ void track(const TrackOptions& options, const GlobalOptions& global) {
     host::Job job({}, &host::interrupt_flag());
     pipeline::PeopleSource source(options.source, registry, services,
                                   limits_of(global, services, kSensedScene, options.realtime),
-                                  {options.people, nullptr, options.smoothing}, job);
+                                  {options.people, nullptr, options.smoothing, {}}, job);
     TrackFile track = TrackFile::named(options.out);
     std::optional<PictureFolder> folder;
     std::optional<TrackPicture> picture;

@@ -74,7 +74,7 @@ class TrackedSource : public FrameSource {
   public:
     TrackedSource(const std::string& uri, host::Registry& registry, host::Services& services,
                   const BoundaryBody& body, const toile_limits& limits, host::Job& job)
-        : people_(uri, registry, services, limits, {1, &body, true}, job) {}
+        : people_(uri, registry, services, limits, {1, &body, true, {}}, job) {}
 
     toile_status next(BodyFrame& out) noexcept override {
         try {

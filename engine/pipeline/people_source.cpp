@@ -46,12 +46,13 @@ std::vector<Row> rows_of(const toile_view& view, std::uint32_t format) {
 PeopleSource::PeopleSource(const std::string& uri, host::Registry& registry,
                            host::Services& services, const toile_limits& limits,
                            const TrackingWish& wish, host::Job& job)
-    : sensor_(uri, registry, services, limits, job), tracker_(find_tracker(registry, services)),
-      table_(&tracker_->table<toile_body_source>()), joints_(wish.most_people),
-      people_(wish.most_people) {
+    : sensor_(uri, registry, services, limits, job), stream_(sensor_.streams().front()),
+      tracker_(find_tracker(registry, services)), table_(&tracker_->table<toile_body_source>()),
+      joints_(wish.most_people), people_(wish.most_people) {
     wish_for(*tracker_, "smoothing", wish.smoothing);
     tracker_->activate(limits);
-    const toile_stream stream = stream_view(sensor_.streams().front(), 0);
+    if (!stream_.world_from_camera) stream_.world_from_camera = wish.camera;
+    const toile_stream stream = stream_view(stream_, 0);
     auto setup = host::sized<toile_body_source_setup>();
     setup.uri = "";
     setup.stream_count = 1;
@@ -118,6 +119,9 @@ void PeopleSource::keep_shape(const toile_body& body) {
     shape.triangles = rows_of<Triangle>(body.rest.triangles, TOILE_U32X3);
     shape.skin.joints = rows_of<std::array<std::uint16_t, 4>>(body.joint_indices, TOILE_U16X4);
     shape.skin.weights = rows_of<std::array<float, 4>>(body.joint_weights, TOILE_F32X4);
+    shape.model = body.model_id == nullptr ? "" : body.model_id;
+    for (const float c : rows_of<float>(body.coefficients, TOILE_F32))
+        shape.coefficients.push_back(static_cast<double>(c));
     const auto joints = rows_of<Vec3f>(body.rest_joints, TOILE_F32X3);
     if (joints.size() != body::kJointCount || shape.skin.joints.size() != shape.rest.size() ||
         shape.skin.weights.size() != shape.rest.size())

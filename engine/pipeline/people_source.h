@@ -14,8 +14,10 @@ namespace toile::pipeline {
 /// A tracked person's own shape, kept by the reader.
 struct PersonShape {
     std::uint64_t revision = 0;
-    body::Skeleton skeleton; ///< at rest
-    std::vector<Vec3f> rest; ///< (nv)
+    std::string model;                ///< id of the avatar in whose space the shape is, or empty
+    std::vector<double> coefficients; ///< there
+    body::Skeleton skeleton;          ///< at rest
+    std::vector<Vec3f> rest;          ///< (nv)
     std::vector<Triangle> triangles;
     body::SkinWeights skin;
 };
@@ -32,6 +34,8 @@ struct TrackingWish {
     std::uint32_t most_people = 1;
     const BoundaryBody* body = nullptr; ///< people are given its bones; null: their own are found
     bool smoothing = true;
+    /// Where the first camera stands, for a sensor that does not know it.
+    std::optional<Eigen::Isometry3d> camera;
 };
 
 /// Not movable. The first camera's frames are used.
@@ -49,7 +53,8 @@ class PeopleSource {
     bool next(PeopleFrame& out);
     [[nodiscard]] bool ended() const { return sensor_.ended(0); }
 
-    [[nodiscard]] const SensorStream& stream() const { return sensor_.streams().front(); }
+    /// The first camera, where it stands as far as sensor or wish tell.
+    [[nodiscard]] const SensorStream& stream() const { return stream_; }
     /// The pictures of the frame that `next` gave last.
     [[nodiscard]] const SensorFrame& pictures() const noexcept { return pictures_; }
     /// \throw std::out_of_range for a revision that no frame told
@@ -65,6 +70,7 @@ class PeopleSource {
     void keep_shape(const toile_body& body);
 
     SensorSource sensor_;
+    SensorStream stream_;
     std::unique_ptr<host::Instance> tracker_;
     const toile_body_source* table_ = nullptr;
     SensorFrame pictures_;

@@ -86,6 +86,7 @@ class Renderer::Impl {
     void draw(const Scene& scene);
     void read(imaging::Image& image);
     void present(int window_width, int window_height);
+    void copy_to(GLuint framebuffer, const Part& from, const Part& to);
 
     Context& context_;
     const GladGLContext& gl_;
@@ -236,12 +237,14 @@ void Renderer::Impl::collect(const Scene& scene) {
         if (m.base_color.w() < 0.5f || (base != nullptr && base->holes)) d.variant |= kHoles;
         if (m.normal_texture != TextureId::none) d.variant |= kNormalMap;
         if (d.mesh->colors.id() != 0) d.variant |= kColored;
-        if (instance.draw == Instance::Draw::visible) {
+        if (instance.draw == Instance::Draw::visible || instance.draw == Instance::Draw::receiver) {
             const auto index = static_cast<std::size_t>(instance.material);
             d.material_index = static_cast<float>(index) / 255.0f;
             materials_[2 * index] = {m.sheen_color.x(), m.sheen_color.y(), m.sheen_color.z(),
                                      std::clamp(m.sheen_roughness, 0.1f, 1.0f)};
-            materials_[2 * index + 1] = Vec4f::Constant(std::clamp(m.roughness, 0.05f, 1.0f));
+            const float received = instance.draw == Instance::Draw::receiver ? 1.0f : 0.0f;
+            materials_[2 * index + 1] = {std::clamp(m.roughness, 0.05f, 1.0f), received, 0.0f,
+                                         0.0f};
         }
         drawables_.push_back(d);
     }
@@ -279,7 +282,7 @@ void Renderer::Impl::fill_frame(const Scene& scene) {
     frame_.occlusion = {b.depth_tolerance, hides ? (b.soft_edges ? 2.0f : 1.0f) : 0.0f,
                         high ? 16.0f : 10.0f, high ? 20.0f : 12.0f};
     const bool floor = scene.floor && b.kind == Background::Kind::studio;
-    frame_.flags = {floor ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
+    frame_.flags = {floor ? 1.0f : 0.0f, b.noise, static_cast<float>(b.noise_seed % 1021u), 0.0f};
     set_touched(frame_, visible);
     contact_.begin(casters);
     const Vec3f rectangle = contact_.rectangle();
@@ -498,6 +501,15 @@ void Renderer::Impl::present(int window_width, int window_height) {
     check_gl(gl_, "showing the picture");
 }
 
+void Renderer::Impl::copy_to(GLuint framebuffer, const Part& from, const Part& to) {
+    context_.make_current();
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_->final.object.id());
+    gl_.BlitFramebuffer(from.left, from.bottom, from.right, from.top, to.left, to.bottom, to.right,
+                        to.top, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    check_gl(gl_, "copying the picture");
+}
+
 Renderer::Renderer(Context& context, const RendererOptions& options) {
     check_size(options.width, options.height);
     impl_ = std::make_unique<Impl>(context, options);
@@ -530,6 +542,13 @@ MeshId Renderer::add_mesh(const MeshDescription& mesh) {
     impl_->context_.make_current();
     return impl_->resources_.add_mesh(mesh);
 }
+void Renderer::remove_texture(TextureId texture) {
+    impl_->context_.make_current();
+    impl_->resources_.remove_texture(texture);
+}
+void Renderer::remove_material(MaterialId material) {
+    impl_->resources_.remove_material(material);
+}
 void Renderer::remove_mesh(MeshId mesh) {
     impl_->context_.make_current();
     impl_->resources_.remove_mesh(mesh);
@@ -557,6 +576,9 @@ imaging::Image Renderer::read() {
     imaging::Image image;
     impl_->read(image);
     return image;
+}
+void Renderer::copy_to(std::uint32_t framebuffer, const Part& from, const Part& to) {
+    impl_->copy_to(framebuffer, from, to);
 }
 void Renderer::present(int window_width, int window_height) {
     impl_->present(window_width, window_height);

@@ -42,6 +42,9 @@ class Renderer {
     [[nodiscard]] MaterialId add_material(const Material& material);
     /// \throw Error when an index is out of range, a count differs or a value is not finite
     [[nodiscard]] MeshId add_mesh(const MeshDescription& mesh);
+    /// Frees a texture or a material, which nothing may name any more; ids are given out again.
+    void remove_texture(TextureId texture);
+    void remove_material(MaterialId material);
     /// Frees a mesh; its id is not given out again. \throw Error when it is unknown
     void remove_mesh(MeshId mesh);
 
@@ -61,6 +64,13 @@ class Renderer {
     /// Copies the last picture out. `image` keeps its memory when it has the size.
     void read(imaging::Image& image);
     [[nodiscard]] imaging::Image read();
+
+    /// Copies part of the last picture into a framebuffer of the same context (OpenGL's name).
+    /// Rows of both count from the bottom; `to` may be wider than `from`, then it is enlarged.
+    struct Part {
+        int left = 0, bottom = 0, right = 0, top = 0;
+    };
+    void copy_to(std::uint32_t framebuffer, const Part& from, const Part& to);
 
     /// Shows the last picture in the context's default framebuffer (a window of this many pixels),
     /// as large as fits, centred.

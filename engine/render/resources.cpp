@@ -126,8 +126,32 @@ TextureId Resources::add_texture(const imaging::Image& image, bool linear) {
                      image.height, image.pixels.data()));
     for (std::size_t i = 0; i < pixels && !linear; ++i)
         t->holes |= image.pixels[4 * i + 3] < 128;
-    textures_.push_back(std::move(t));
+    return keep(std::move(t));
+}
+
+TextureId Resources::keep(std::unique_ptr<GpuTexture> texture) {
+    if (!free_textures_.empty()) {
+        const TextureId id = free_textures_.back();
+        free_textures_.pop_back();
+        textures_[index_of(id)] = std::move(texture);
+        return id;
+    }
+    textures_.push_back(std::move(texture));
     return static_cast<TextureId>(textures_.size());
+}
+
+void Resources::remove_texture(TextureId id) {
+    if (texture(id) == nullptr) return;
+    textures_[index_of(id)].reset();
+    free_textures_.push_back(id);
+}
+
+void Resources::remove_material(MaterialId id) {
+    if (material(id) == nullptr ||
+        std::find(free_materials_.begin(), free_materials_.end(), id) != free_materials_.end())
+        return;
+    materials_[index_of(id)] = {};
+    free_materials_.push_back(id);
 }
 
 TextureId Resources::add_depth(const imaging::DepthImage& depth) {
@@ -141,8 +165,7 @@ TextureId Resources::add_depth(const imaging::DepthImage& depth) {
     auto t = std::make_unique<GpuTexture>(
         make_texture(GpuTexture::Kind::depth, depth.width, depth.height, nullptr));
     t->staging.resize(pixels);
-    textures_.push_back(std::move(t));
-    const auto id = static_cast<TextureId>(textures_.size());
+    const TextureId id = keep(std::move(t));
     static_cast<void>(update_depth(id, depth));
     return id;
 }
@@ -164,7 +187,7 @@ Status Resources::update_texture(TextureId id, const imaging::Image& image) noex
 
 Status Resources::update_depth(TextureId id, const imaging::DepthImage& depth) noexcept {
     const std::size_t i = index_of(id);
-    if (i >= textures_.size() || textures_[i]->kind != GpuTexture::Kind::depth) {
+    if (i >= textures_.size() || !textures_[i] || textures_[i]->kind != GpuTexture::Kind::depth) {
         return Status::unknown;
     }
     GpuTexture& t = *textures_[i];
@@ -190,6 +213,12 @@ MaterialId Resources::add_material(const Material& m) {
     const float sum =
         m.base_color.sum() + m.sheen_color.sum() + m.sheen_roughness + m.roughness + m.normal_scale;
     if (!std::isfinite(sum)) throw Error("material: a value is not finite");
+    if (!free_materials_.empty()) {
+        const MaterialId id = free_materials_.back();
+        free_materials_.pop_back();
+        materials_[index_of(id)] = m;
+        return id;
+    }
     if (materials_.size() >= kMaxMaterials) {
         throw Error("material: a renderer holds at most " + std::to_string(kMaxMaterials));
     }

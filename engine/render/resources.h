@@ -47,6 +47,8 @@ class Resources {
     MaterialId add_material(const Material& material);
     MeshId add_mesh(const MeshDescription& mesh);
     void remove_mesh(MeshId mesh);
+    void remove_texture(TextureId texture);
+    void remove_material(MaterialId material);
 
     Status update_mesh(MeshId mesh, std::span<const Vec3f> positions,
                        std::span<const Vec3f> normals) noexcept;
@@ -62,6 +64,7 @@ class Resources {
     [[nodiscard]] GLuint white() const { return white_.object.id(); }
 
   private:
+    TextureId keep(std::unique_ptr<GpuTexture> texture);
     GpuTexture make_texture(GpuTexture::Kind kind, int width, int height, const void* pixels);
     void upload(GpuMesh& mesh) noexcept;
 
@@ -69,6 +72,8 @@ class Resources {
     std::vector<std::unique_ptr<GpuMesh>> meshes_;
     std::vector<std::unique_ptr<GpuTexture>> textures_;
     std::vector<Material> materials_;
+    std::vector<TextureId> free_textures_;
+    std::vector<MaterialId> free_materials_;
     GpuTexture white_;
 };
 

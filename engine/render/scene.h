@@ -80,14 +80,18 @@ struct Background {
     TextureId depth = TextureId::none;          ///< camera: metres along its axis, or none
     float depth_tolerance = 0.06f; ///< a real surface hides what lies this much behind it, metres
     bool soft_edges = true;        ///< false: the nearest depth pixel alone decides
+    float noise = 0.0f; ///< camera: grain on what is drawn, standard deviation of sRGB values
+    std::uint32_t noise_seed = 0; ///< another one each frame
 };
 
 /// One mesh in the scene.
 struct Instance {
-    enum class Draw { invalid, visible, occluder, hidden };
+    enum class Draw { invalid, visible, occluder, hidden, receiver };
     MeshId mesh = MeshId::none;
     MaterialId material = MaterialId::none;
-    Draw draw = Draw::visible; ///< occluder: hides what is behind it, is not seen itself
+    /// occluder: hides what is behind it, is not seen itself. receiver: as an occluder, but the
+    /// camera's picture on it takes the shadows of what casts some; its material is its own.
+    Draw draw = Draw::visible;
     bool casts_shadow = true;
     RigidTransform world_from_mesh;
 };

@@ -16,5 +16,7 @@ extern const char* const k_shading;
 extern const char* const k_lighting;
 extern const char* const k_classify_fragment;
 extern const char* const k_final_fragment;
+extern const char* const k_canvas_vertex;
+extern const char* const k_canvas_fragment;
 
 } // namespace toile::render::shaders

@@ -5,6 +5,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <glad/gl.h>
+#include <utility>
 
 namespace toile::render {
 namespace {
@@ -81,7 +82,8 @@ GLFWwindow* make_window(const WindowOptions& options) {
 
 class Window::Impl {
   public:
-    explicit Impl(const WindowOptions& options) : window_(make_window(options)) {
+    explicit Impl(const WindowOptions& options)
+        : window_(make_window(options)), escape_closes_(options.escape_closes) {
         try {
             context_ = std::make_unique<WindowContext>(window_);
         } catch (...) {
@@ -89,11 +91,14 @@ class Window::Impl {
             throw;
         }
         glfwSwapInterval(0); // the frame loop keeps its own time
+        glfwSetWindowUserPointer(window_, this);
         glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
-            if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) {
-                glfwSetWindowShouldClose(w, GLFW_TRUE);
-            }
+            if (action == GLFW_PRESS) self(w).press(key);
         });
+        glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
+            if (button == GLFW_MOUSE_BUTTON_LEFT && action == GLFW_PRESS) self(w).tap();
+        });
+        if (options.hide_cursor) glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
     }
     ~Impl() {
         context_.reset();
@@ -102,8 +107,50 @@ class Window::Impl {
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
+    static Impl& self(GLFWwindow* window) {
+        return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+    }
+
+    void press(int key) {
+        using Key = WindowInput::Key;
+        if (key == GLFW_KEY_ESCAPE && escape_closes_) glfwSetWindowShouldClose(window_, GLFW_TRUE);
+        WindowInput::Press press;
+        if ((key >= GLFW_KEY_A && key <= GLFW_KEY_Z) || (key >= GLFW_KEY_0 && key <= GLFW_KEY_9)) {
+            const bool digit = key <= GLFW_KEY_9;
+            press = {Key::letter,
+                     static_cast<char>(digit ? '0' + key - GLFW_KEY_0 : 'a' + key - GLFW_KEY_A)};
+        } else {
+            press.key = key == GLFW_KEY_LEFT                                ? Key::left
+                        : key == GLFW_KEY_RIGHT                             ? Key::right
+                        : key == GLFW_KEY_UP                                ? Key::up
+                        : key == GLFW_KEY_DOWN                              ? Key::down
+                        : key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER ? Key::enter
+                        : key == GLFW_KEY_ESCAPE                            ? Key::escape
+                        : key == GLFW_KEY_SPACE                             ? Key::space
+                                                                            : Key::invalid;
+        }
+        if (press.key != Key::invalid) input_.keys.push_back(press);
+    }
+
+    void tap() {
+        double x = 0.0;
+        double y = 0.0;
+        glfwGetCursorPos(window_, &x, &y);
+        int window_width = 0;
+        int window_height = 0;
+        int width = 0;
+        int height = 0;
+        glfwGetWindowSize(window_, &window_width, &window_height);
+        glfwGetFramebufferSize(window_, &width, &height);
+        if (window_width < 1 || window_height < 1) return;
+        input_.taps.emplace_back(static_cast<float>(x * width / window_width),
+                                 static_cast<float>(y * height / window_height));
+    }
+
     GlfwLibrary library_;
     GLFWwindow* window_;
+    bool escape_closes_;
+    WindowInput input_;
     std::unique_ptr<WindowContext> context_;
 };
 
@@ -117,6 +164,10 @@ Context& Window::context() {
 bool Window::poll() {
     glfwPollEvents();
     return glfwWindowShouldClose(impl_->window_) == GLFW_FALSE;
+}
+
+WindowInput Window::take_input() {
+    return std::exchange(impl_->input_, {});
 }
 
 void Window::close() {
@@ -144,6 +195,12 @@ void Window::show(Renderer& renderer) {
     // A minimised window has no pixels to show anything in.
     if (width() < 1 || height() < 1) return;
     renderer.present(width(), height());
+    glfwSwapBuffers(impl_->window_);
+}
+
+void Window::show(Screen& screen) {
+    if (width() < 1 || height() < 1) return;
+    screen.present(width(), height());
     glfwSwapBuffers(impl_->window_);
 }
 

@@ -3,9 +3,11 @@
 
 #include "render/context.h"
 #include "render/renderer.h"
+#include "render/screen.h"
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace toile::render {
 
@@ -15,6 +17,19 @@ struct WindowOptions {
     int height = 1280;
     bool fullscreen = false; ///< on the main monitor, in its own resolution
     bool visible = true;
+    bool hide_cursor = false;
+    bool escape_closes = true;
+};
+
+/// What a keyboard, a mouse or a touch screen did since the last look.
+struct WindowInput {
+    enum class Key { invalid, left, right, up, down, enter, escape, space, letter };
+    struct Press {
+        Key key = Key::invalid;
+        char letter = 0; ///< 'a' to 'z', '0' to '9'
+    };
+    std::vector<Press> keys;
+    std::vector<Vec2f> taps; ///< pixels of the framebuffer from its top left corner
 };
 
 /// Main thread only. One window a process is enough for a mirror; several are allowed.
@@ -31,6 +46,9 @@ class Window {
 
     /// Handles input. False once the window was closed or Escape was pressed.
     [[nodiscard]] bool poll();
+    /// Keys and taps since the last call. A touch comes as a tap where the system makes it the
+    /// first mouse button, as X11 does.
+    [[nodiscard]] WindowInput take_input();
     /// As if the user had closed it.
     void close();
 
@@ -42,6 +60,7 @@ class Window {
 
     /// Shows the renderer's last picture, as large as fits. \throw Error
     void show(Renderer& renderer);
+    void show(Screen& screen);
 
   private:
     class Impl;

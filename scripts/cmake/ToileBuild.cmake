@@ -158,4 +158,5 @@ function(toile_link_data)
         file(CREATE_LINK "${CMAKE_SOURCE_DIR}/engine/apps/${folder}" "${CMAKE_BINARY_DIR}/bin/${folder}"
              SYMBOLIC)
     endforeach()
+    file(CREATE_LINK "${CMAKE_SOURCE_DIR}/engine/apps/kiosk/data" "${CMAKE_BINARY_DIR}/bin/kiosk" SYMBOLIC)
 endfunction()

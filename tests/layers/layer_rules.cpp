@@ -72,6 +72,7 @@ const std::vector<Library> kLibraries = {
      "^(PkgConfig::OSMESA|toile_glad|OpenGL::.*)$",
      {"render"},
      false},
+    {"Dear ImGui", "^imgui.*", "^PkgConfig::IMGUI$", {"render"}, false},
     {"CLI11", "^CLI/.*", "^CLI11::.*", {"apps"}, false},
     {"OpenImageIO", "^OpenImageIO/.*", "^PkgConfig::OPENIMAGEIO$", {"apps"}, false},
     {"Bullet", "^(btBullet.*|Bullet.*|LinearMath/.*)", "^PkgConfig::BULLET$", {}, true},

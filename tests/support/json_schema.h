@@ -47,7 +47,8 @@ class JsonSchema {
 
     static void check(const Json& value, const Json& schema, const std::string& place,
                       Faults& out) {
-        static const std::set<std::string> kNotes = {"$schema", "title", "description", "$comment"};
+        static const std::set<std::string> kNotes = {"$schema", "title", "description", "default",
+                                                     "$comment"};
         for (const auto& [key, rule] : schema.items()) {
             if (kNotes.contains(key)) continue;
             if (!general(value, key, rule, place, out) && !number(value, key, rule, place, out) &&

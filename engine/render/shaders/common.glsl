@@ -22,7 +22,7 @@ layout(std140) uniform Frame {
     vec4 contact;          // x and z of the map's corner, 1 / size, strength
     vec4 occlusion;        // tolerance (metres), 0 none 1 exact 2 soft, taps: ambient, shadow
     vec4 meshes;           // pixels of the target that meshes may touch: left, bottom, right, top
-    vec4 flags;            // 1 with a floor
+    vec4 flags;            // 1 with a floor; grain of the camera (sRGB), its seed
 };
 
 const float kPi = 3.14159265;

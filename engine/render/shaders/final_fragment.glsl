@@ -5,7 +5,7 @@ uniform sampler2DMS drawn_surface;
 uniform sampler2DMS drawn_normal;
 uniform sampler2DMS drawn_depth;
 layout(std140) uniform Materials {
-    vec4 materials[512]; // two each: sheen colour and roughness; roughness
+    vec4 materials[512]; // two each: sheen colour and roughness; roughness, 1 for a receiver
 };
 out vec4 color;
 
@@ -39,6 +39,24 @@ void add(inout Group g, vec4 surface, vec3 n, float depth, bool wanted) {
     g.material = wanted ? surface.a : g.material;
 }
 
+#ifdef CAMERA
+const float kReceived = 0.55; // of the light, where a receiver lies in shadow
+
+float random(vec3 p) {
+    p = fract(p * vec3(0.1031, 0.1030, 0.0973));
+    p += dot(p, p.yxz + 33.33);
+    return fract((p.x + p.y) * p.z);
+}
+
+// With the grain that the camera's own pixels have; a square root is nearly sRGB's curve.
+vec3 grained(vec3 light, vec2 pixel) {
+    vec3 where = vec3(floor(pixel / range.w), flags.z);
+    float sum = random(where) + random(where + 7.13) + random(where + 17.7) - 1.5;
+    vec3 encoded = sqrt(max(light, 0.0)) + 2.0 * flags.y * sum;
+    return encoded * max(encoded, 0.0);
+}
+#endif
+
 // Light of a group times its samples; a: minus the samples it covers.
 vec4 group_light(Group g, vec2 pixel) {
     float samples = max(g.color.a, 1e-3);
@@ -52,7 +70,13 @@ vec4 group_light(Group g, vec2 pixel) {
     s.sheen = materials[2 * material];
     s.sheen.a = max(s.sheen.a, 0.1);
     s.roughness = max(materials[2 * material + 1].x, 0.05);
-    vec3 light = tone_map(shaded(s, visibility_at(pixel, depth)));
+    vec2 seen = visibility_at(pixel, depth);
+    vec3 light = tone_map(shaded(s, seen));
+#ifdef CAMERA
+    light = materials[2 * material + 1].y > 0.5
+                ? camera_color(pixel) * mix(1.0 - kReceived, 1.0, seen.x)
+                : flags.y > 0.0 ? grained(light, pixel) : light;
+#endif
     float shown = g.color.a;
 #ifdef OCCLUSION
     shown *= 1.0 - hidden_share(pixel, depth);

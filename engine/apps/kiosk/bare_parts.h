@@ -1,0 +1,27 @@
+// Hands and arms that no cloth covers: what of them the camera sees lies before the cloth.
+#pragma once
+
+#include "imaging/camera.h"
+#include "imaging/image.h"
+#include "pipeline/dressed_person.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace toile::apps::kiosk {
+
+/// Vertices of arms and hands that the garments leave bare, on the body at rest: those
+/// whose normal meets no cloth within 10 cm and that are not within 2 cm of any.
+[[nodiscard]] std::vector<std::uint32_t> bare_vertices(const pipeline::DressedPerson& person);
+
+/// Brings depth readings of these vertices nearer by `lift_m`, in a picture that decides what hides
+/// cloth: tracked skin and simulated cloth are centimetres off, and a hand laid on the trunk would
+/// vanish in the cloth. Only readings that lie at most 6 cm before a vertex and 2 cm
+/// behind it, and what is around them within
+/// `reach` pixels and 2 cm. `out` has the size of `seen`. [frame]
+void lift_bare_parts(const pipeline::DressedPerson& person,
+                     const std::vector<std::uint32_t>& vertices, const imaging::Intrinsics& camera,
+                     const Eigen::Isometry3d& place, const imaging::DepthImage& seen, float lift_m,
+                     int reach, imaging::DepthImage& out);
+
+} // namespace toile::apps::kiosk

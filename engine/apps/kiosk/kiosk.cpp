@@ -1,0 +1,517 @@
+#include "apps/kiosk/kiosk.h"
+
+#include "apps/kiosk/room.h"
+#include "core/bytes.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "host/job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <unistd.h>
+
+namespace toile::apps::kiosk {
+namespace {
+
+constexpr double kFrame_s = 1.0 / 30.0;
+constexpr double kMetricsEvery_s = 5.0;
+constexpr double kLookEvery_s = 1.0; // at the garments' files
+constexpr double kNoteToShopper_s = 6.0;
+constexpr std::size_t kMostNotes = 3;
+constexpr std::uint64_t kWarmUpFrame = 1; // the first picture is out
+constexpr double kClockJump_s = 5.0;
+constexpr double kLongest_s = 0.3; // that clothes walk through between two frames
+// A late frame must not make the next one later: two steps of the cloth.
+constexpr double kLongestLive_s = 0.085;
+
+std::vector<Article> read_articles(const KioskConfig& config) {
+    std::vector<Article> out;
+    std::string refused;
+    for (const std::filesystem::path& source :
+         garment_sources(config.garments, config.garments_folder)) {
+        try {
+            out.push_back(read_article_head(source));
+        } catch (const std::exception& e) {
+            log::warning(e.what());
+            refused = e.what();
+        }
+    }
+    if (out.empty()) throw Error("the mirror has no garment to show: " + refused);
+    return out;
+}
+
+ScreenTimes times_of(const KioskConfig& config) {
+    ScreenTimes out;
+    out.away_s = config.away_s;
+    out.patience_s = config.patience_s;
+    return out;
+}
+
+} // namespace
+
+Kiosk::Kiosk(KioskRun run, const GlobalOptions& global)
+    : run_(std::move(run)), texts_(Texts::load(run_.config.language)),
+      articles_(read_articles(run_.config)), tailor_(global, run_.realtime || !run_.headless,
+                                                     !(run_.realtime || !run_.headless), run_.safe),
+      scribe_(!(run_.realtime || !run_.headless)),
+      feed_(tailor_, run_.config.source, run_.config.people, run_.config.camera,
+            run_.realtime || !run_.headless, run_.frames > 0),
+      visitors_(tailor_, run_.config.people, run_.config.away_s),
+      screens_(times_of(run_.config), run_.config.measure, run_.safe),
+      pointer_({run_.config.dwell_s}), scale_(1.0f), live_(run_.realtime || !run_.headless) {
+    display_ = std::make_unique<Display>(run_.config, run_.headless);
+    load_thumbnails();
+    if (live_) watch_ = std::make_unique<CatalogueWatch>(articles_, kLookEvery_s);
+    metrics_.restarts = run_.restarts;
+    if (run_.restarts > 0)
+        note_fault(Fault::crash,
+                   texts_.with(Text::restarted, {{"count", std::to_string(run_.restarts)}}));
+}
+
+Kiosk::~Kiosk() {
+    visitors_.erase();
+}
+
+void Kiosk::note_fault(Fault fault, std::string words) {
+    metrics_.count(fault);
+    log::warning(words);
+    notes_.push_back({std::move(words), now_s_ + run_.config.operator_line_s});
+    while (notes_.size() > kMostNotes)
+        notes_.pop_front();
+}
+
+void Kiosk::beat() const {
+    if (run_.heartbeat >= 0) (void)!write(run_.heartbeat, "+", 1);
+}
+
+void Kiosk::run() {
+    while (frame()) {
+    }
+    write_metrics(true);
+    write_report();
+}
+
+bool Kiosk::frame() {
+    const double began_s = pipeline::wall_seconds();
+    const double before_s = now_s_;
+    now_s_ = live_ ? began_s : static_cast<double>(number_) * kFrame_s;
+    const double dt_s = number_ == 0 ? kFrame_s : std::clamp(now_s_ - before_s, 0.0, 1.0);
+    if (!display_->poll() || quit_ || host::interrupt_flag()) return false;
+    if (run_.frames > 0 && number_ >= run_.frames) return false;
+    fresh_ = screens_.now() != ScreenName::safe && feed_.next(people_, now_s_);
+    if (fresh_) source_time_.add(pipeline::wall_seconds() - began_s);
+    picture_s_ = 0.0;
+    if (feed_.ended()) return false;
+    if (live_ && !fresh_ && feed_.up() && screens_.now() != ScreenName::safe) {
+        // The camera has no new picture yet.
+        if (last_frame_s_ > 0.0 && now_s_ - last_frame_s_ < 2.0 * kFrame_s) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            now_s_ = before_s; // this was no frame of the mirror
+            beat();
+            take_input();
+            return true;
+        }
+    }
+    if (const auto note = feed_.take_note()) {
+        if (note->empty())
+            notes_.push_back({texts_[Text::camera_back], now_s_ + run_.config.operator_line_s});
+        else
+            note_fault(Fault::camera, texts_.with(Text::camera_lost, {{"why", *note}}));
+    }
+    take_script();
+    fresh_ = fresh_ && feed_.up();
+    take_input();
+    fresh_ = fresh_ && feed_.up(); // the operator may have had it opened again
+    if (fresh_)
+        take_frame(dt_s);
+    else
+        visitors_.see_nobody(dt_s);
+    take_changes();
+    const std::uint32_t people = visitors_.count();
+    screens_.tick({dt_s, people, measuring_});
+    for (const Effect effect : screens_.take_effects())
+        perform(effect, visitors_.first());
+    take_results();
+    if (fresh_ && screens_.now() == ScreenName::mirror)
+        visitors_.step(clock_, live_ ? kLongestLive_s : kLongest_s);
+    if (fresh_ && live_ && clock_offset_s_)
+        state_latency_.add(pipeline::wall_seconds() - picture_s_ - *clock_offset_s_ -
+                           1e-9 * static_cast<double>(people_.timestamp_ns));
+    const double drawing_s = pipeline::wall_seconds();
+    try {
+        draw();
+    } catch (const Error& e) {
+        rebuild_display(e.what());
+    }
+    const double ended_s = pipeline::wall_seconds();
+    draw_time_.add(ended_s - drawing_s + picture_s_);
+    if (fresh_) {
+        frame_time_.add(ended_s - began_s);
+        compute_time_.add(drawing_s - began_s - picture_s_);
+        if (live_ && clock_offset_s_)
+            picture_latency_.add(ended_s - *clock_offset_s_ -
+                                 1e-9 * static_cast<double>(people_.timestamp_ns));
+        if (live_) metrics_.picture_scale = static_cast<double>(scale_.add(ended_s - began_s));
+    }
+    clock_.end_frame();
+    beat();
+    if (number_ == kWarmUpFrame) display_->picture().warm_up();
+    ++number_;
+    ++metrics_.frames;
+    write_metrics(false);
+    pace(began_s);
+    return true;
+}
+
+// Without a camera nothing paces the loop.
+void Kiosk::pace(double began_s) const {
+    if (!live_ || fresh_) return;
+    const double left = 2.0 * kFrame_s - (pipeline::wall_seconds() - began_s);
+    if (left > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(left));
+}
+
+void Kiosk::take_frame(double dt_s) {
+    const pipeline::SensorFrame& pictures = feed_.pictures();
+    const double wall_s = pipeline::wall_seconds();
+    const double captured_s = 1e-9 * static_cast<double>(people_.timestamp_ns);
+    if (camera_frames_ > 0) {
+        longest_gap_s_ = std::max(longest_gap_s_, wall_s - last_frame_s_);
+        if (people_.sequence > last_sequence_ + 1)
+            metrics_.dropped += people_.sequence - last_sequence_ - 1;
+        const double passed_s = 1e-9 * static_cast<double>(people_.timestamp_ns - last_ns_);
+        if (last_ns_ >= 0 && feed_.up() && people_.sequence > last_sequence_ &&
+            (passed_s <= 0.0 || passed_s > kClockJump_s))
+            note_fault(Fault::clock, texts_[Text::clock_changed]);
+    } else {
+        first_frame_s_ = wall_s;
+    }
+    // The least delay seen stands for none: when capture and wall began together is not told.
+    if (!clock_offset_s_ || people_.sequence <= last_sequence_)
+        clock_offset_s_ = wall_s - captured_s;
+    clock_offset_s_ = std::min(*clock_offset_s_, wall_s - captured_s);
+    ++camera_frames_;
+    last_ns_ = people_.timestamp_ns;
+    last_sequence_ = people_.sequence;
+    last_frame_s_ = wall_s;
+    const Eigen::Isometry3d eye =
+        feed_.stream().world_from_camera.value_or(Eigen::Isometry3d::Identity());
+    visitors_.see(people_, feed_, eye.translation().cast<float>(), dt_s);
+    visitors_.order_waiting(articles_);
+    if (measuring_ == Measuring::looking) turn_to_measure(dt_s);
+    const double picture_began_s = pipeline::wall_seconds();
+    give_picture(pictures, dt_s);
+    picture_s_ = pipeline::wall_seconds() - picture_began_s;
+}
+
+void Kiosk::give_picture(const pipeline::SensorFrame& pictures, double dt_s) {
+    const bool seen = shows_picture(screens_.now());
+    if (seen || screens_.now() == ScreenName::consent || screens_.now() == ScreenName::measure)
+        display_->picture().set_camera(pictures, feed_.stream());
+    if (!seen) return;
+    std::vector<LitPlace> places;
+    for (const Shopper& shopper : visitors_.all())
+        if (shopper.looks[0])
+            display_->picture().add_lit_places(*shopper.looks[0]->person, pictures, places);
+    display_->picture().follow_light(pictures, places, dt_s);
+    if (screens_.now() == ScreenName::setup)
+        floor_ = find_camera(pictures.depth, feed_.stream().depth);
+}
+
+void Kiosk::turn_to_measure(double dt_s) {
+    const Shopper* shopper = visitors_.first();
+    if (shopper == nullptr || !shopper->here) return;
+    const Eigen::Isometry3d eye =
+        feed_.stream().world_from_camera.value_or(Eigen::Isometry3d::Identity());
+    turn_.see(shopper->frame, eye.translation().cast<float>(), feed_.pictures(), dt_s);
+    if (!turn_.complete()) return;
+    measuring_ = Measuring::working;
+    tailor_.measure(turn_.take(), feed_.stream());
+}
+
+void Kiosk::take_results() {
+    if (auto measured = tailor_.take_measured()) {
+        Shopper* shopper = visitors_.first();
+        const bool usable = measured->error.empty() && shopper != nullptr;
+        measuring_ = usable ? Measuring::done : Measuring::failed;
+        if (usable) shopper->measurements = measured->body.body->model().measurements;
+        if (!measured->error.empty()) log::warning(measured->error);
+    }
+    for (DressResult& result : tailor_.take_dressed()) {
+        Shopper* shopper = visitors_.find(result.order.person);
+        if (shopper == nullptr) continue;
+        if (result.worn)
+            wear_on(*shopper, std::move(result));
+        else
+            note_fault(Fault::garment,
+                       texts_.with(Text::garment_refused,
+                                   {{"id", result.order.article.id}, {"why", result.error}}));
+    }
+    for (Shopper& shopper : visitors_.all())
+        for (std::optional<WornLook>& look : shopper.looks)
+            if (look)
+                for (const std::string& fault : look->person->faults()) {
+                    const std::string words = texts_.with(Text::plugin_off, {{"why", fault}});
+                    const bool said = std::any_of(notes_.begin(), notes_.end(),
+                                                  [&](const Note& n) { return n.words == words; });
+                    if (!said) note_fault(Fault::plugin, words);
+                }
+}
+
+void Kiosk::wear_on(Shopper& shopper, DressResult result) {
+    WornLook look;
+    look.choice = result.order.choice;
+    look.advice = result.advice;
+    look.timestamp_ns = result.timestamp_ns;
+    look.bare = std::move(result.bare);
+    look.person = std::move(result.worn);
+    look.meshes = std::make_unique<WornMeshes>(display_->picture().renderer(), *look.person,
+                                               look.choice.colour, look.bare);
+    if (!shopper.body.body) shopper.body = result.order.body;
+    shopper.looks[result.order.look].reset(); // its meshes first, then its person
+    shopper.looks[result.order.look] = std::move(look);
+    ++metrics_.garments;
+}
+
+void Kiosk::take_changes() {
+    for (const std::string& error : scribe_.take_errors())
+        note_fault(Fault::disk, texts_.with(Text::disk_full, {{"why", error}}));
+    if (!watch_) return;
+    for (const CatalogueChange& change : watch_->take()) {
+        const std::string& id = change.article.id;
+        if (!change.refused.empty()) {
+            note_fault(Fault::garment,
+                       texts_.with(Text::garment_refused, {{"id", id}, {"why", change.refused}}));
+            continue;
+        }
+        log::info(texts_.with(Text::garment_changed, {{"id", id}}));
+        notes_.push_back({texts_.with(Text::garment_changed, {{"id", id}}),
+                          now_s_ + run_.config.operator_line_s});
+        for (std::size_t i = 0; i < articles_.size(); ++i) {
+            if (articles_[i].id != id) continue;
+            articles_[i] = change.article;
+            load_thumbnails();
+            for (Shopper& shopper : visitors_.all())
+                for (std::size_t look = 0; look < shopper.looks.size(); ++look)
+                    if (shopper.looks[look] && shopper.wanted[look].article == i) {
+                        shopper.wanted[look] = {i, 0, 0};
+                        visitors_.order(shopper, look, articles_);
+                    }
+        }
+    }
+}
+
+void Kiosk::act(Action action, std::uint32_t person) {
+    if (action != Action::invalid) hand_at_s_ = now_s_;
+    Shopper* shopper = person == 0 ? visitors_.first() : visitors_.find(person);
+    if (action == Action::agree && shopper != nullptr) {
+        shopper->agreed = true;
+        if (screens_.now() == ScreenName::mirror) { // a second one, who joins
+            visitors_.order(*shopper, 0, articles_);
+            ++metrics_.visits;
+            return;
+        }
+    }
+    if (action == Action::snapshot && run_.config.snapshots.empty()) return;
+    const ScreenName before = screens_.now();
+    screens_.act(action);
+    if (action == Action::agree && screens_.now() != before) ++metrics_.visits;
+    if (action == Action::decline && screens_.now() != before) ++metrics_.declined;
+    for (const Effect effect : screens_.take_effects())
+        perform(effect, shopper);
+}
+
+void Kiosk::wear() {
+    for (Shopper& shopper : visitors_.all())
+        if (shopper.agreed) visitors_.order(shopper, 0, articles_);
+}
+
+void Kiosk::change(Shopper& shopper, const Choice& choice) {
+    // Side by side it is the second look that changes.
+    const std::size_t look = screens_.comparing() ? 1 : 0;
+    shopper.wanted[look] = choice;
+    visitors_.order(shopper, look, articles_);
+}
+
+void Kiosk::perform(Effect effect, Shopper* shopper) {
+    const std::size_t look = screens_.comparing() ? 1 : 0;
+    const auto wanted = [&] { return shopper->wanted[look]; };
+    switch (effect) {
+    case Effect::begin_measuring:
+        turn_.begin();
+        measuring_ = Measuring::looking;
+        break;
+    case Effect::wear:
+        turn_.erase();
+        wear();
+        break;
+    case Effect::erase:
+        turn_.erase();
+        visitors_.erase();
+        display_->picture().erase();
+        people_.people.clear();
+        people_.shapes.clear();
+        measuring_ = Measuring::not_begun;
+        shopper_note_ = {};
+        frozen_from_.reset();
+        floor_.reset();
+        break;
+    case Effect::freeze:
+        azimuth_deg_ = 0.0f;
+        azimuth_goal_deg_ = 180.0f;
+        frozen_s_ = 0.0;
+        frozen_from_.reset();
+        break;
+    case Effect::turn:
+        azimuth_goal_deg_ += 90.0f;
+        break;
+    case Effect::unfreeze:
+        frozen_from_.reset();
+        break;
+    case Effect::snapshot:
+        snapshot_ = true;
+        break;
+    case Effect::next_garment:
+        if (shopper != nullptr) change(*shopper, step(wanted(), 1, articles_.size()));
+        break;
+    case Effect::previous_garment:
+        if (shopper != nullptr) change(*shopper, step(wanted(), -1, articles_.size()));
+        break;
+    case Effect::next_size:
+        if (shopper != nullptr) change(*shopper, next_size(wanted(), articles_[wanted().article]));
+        break;
+    case Effect::next_colour:
+        if (shopper != nullptr)
+            change(*shopper, next_colour(wanted(), articles_[wanted().article]));
+        break;
+    case Effect::compare:
+        if (shopper == nullptr) break;
+        if (screens_.comparing())
+            change(*shopper, step(shopper->wanted[0], 1, articles_.size()));
+        else
+            shopper->looks[1].reset();
+        break;
+    case Effect::invalid:
+        break;
+    }
+}
+
+void Kiosk::inject(const std::string& fault) {
+    if (fault == "camera") feed_.lose("unplugged by the script", now_s_);
+    if (fault == "picture") rebuild_display("lost by the script");
+    if (fault == "disk") scribe_.fail_next();
+    if (fault == "crash" && run_.restarts == 0) std::abort();
+    if (fault == "stall" && run_.restarts == 0)
+        for (;;)
+            std::this_thread::sleep_for(std::chrono::seconds(1));
+}
+
+void Kiosk::take_script() {
+    for (const ScriptStep& step : run_.script.at(number_)) {
+        if (step.kind == ScriptStep::Kind::act) {
+            const auto& all = visitors_.all();
+            if (step.person == 2 && all.size() < 2) continue;
+            act(step.action, step.person == 2 ? all[1].id : 0);
+        }
+        if (step.kind == ScriptStep::Kind::fault) inject(step.name);
+        if (step.kind == ScriptStep::Kind::quit) quit_ = true;
+    }
+}
+
+void Kiosk::take_input() {
+    const render::WindowInput input = display_->take_input();
+    using Key = render::WindowInput::Key;
+    const std::vector<Button> shown = buttons();
+    for (const Vec2f& tap : input.taps)
+        act(Pointer::tap(tap, shown), 0);
+    for (const auto& press : input.keys) {
+        if (screens_.now() == ScreenName::setup) {
+            setup_key(press);
+            continue;
+        }
+        if (press.key == Key::letter && press.letter == 'o') act(Action::open_setup, 0);
+        if (press.key == Key::left || press.key == Key::up) pointer_.move_focus(-1, shown);
+        if (press.key == Key::right || press.key == Key::down) pointer_.move_focus(1, shown);
+        if (press.key == Key::enter || press.key == Key::space) act(pointer_.press_focus(shown), 0);
+        if (press.key == Key::escape)
+            act(screens_.now() == ScreenName::consent ? Action::decline : Action::finish, 0);
+    }
+    if (!fresh_ || screens_.now() == ScreenName::setup) return;
+    const std::vector<Hand> hands =
+        visitors_.hands([this](const Vec3f& p) { return on_screen(p); });
+    const Action pressed = pointer_.hover(hands, shown, kFrame_s);
+    if (pressed != Action::invalid) act(pressed, pointer_.person());
+}
+
+void Kiosk::setup_key(const render::WindowInput::Press& press) {
+    using Key = render::WindowInput::Key;
+    MirrorSettings& mirror = run_.config.mirror;
+    constexpr double kStep = 0.01;
+    const auto clamped = [](double v) { return std::clamp(v, -0.5, 0.5); };
+    if (press.key == Key::left) mirror.offset_x = clamped(mirror.offset_x - kStep);
+    if (press.key == Key::right) mirror.offset_x = clamped(mirror.offset_x + kStep);
+    if (press.key == Key::up) mirror.offset_y = clamped(mirror.offset_y - kStep);
+    if (press.key == Key::down) mirror.offset_y = clamped(mirror.offset_y + kStep);
+    if (press.letter == '1') mirror.scale = std::max(1.0, mirror.scale - 0.02);
+    if (press.letter == '2') mirror.scale = std::min(4.0, mirror.scale + 0.02);
+    if (press.letter == 'f' && floor_) {
+        run_.config.camera = *floor_;
+        feed_.set_camera(*floor_);
+    }
+    if (press.letter == 's' && !run_.config_file.empty()) {
+        try {
+            save_setup(run_.config_file, mirror, run_.config.camera);
+            notes_.push_back({texts_[Text::setup_saved], now_s_ + run_.config.operator_line_s});
+        } catch (const std::exception& e) {
+            note_fault(Fault::disk, texts_.with(Text::disk_full, {{"why", e.what()}}));
+        }
+    }
+    if (press.letter == 'q') quit_ = true;
+    if (press.key == Key::escape || press.key == Key::enter) act(Action::close_setup, 0);
+}
+
+void Kiosk::write_metrics(bool now) {
+    if (run_.config.metrics.empty() || (!now && now_s_ < metrics_at_s_)) return;
+    metrics_at_s_ = now_s_ + kMetricsEvery_s;
+    metrics_.screen = screens_.now();
+    metrics_.camera_up = feed_.up();
+    metrics_.frame_p95_s = 1e-3 * frame_time_.quantiles().p95_ms;
+    metrics_.latency_p95_s = 1e-3 * picture_latency_.quantiles().p95_ms;
+    scribe_.write(run_.config.metrics, prometheus_text(metrics_));
+}
+
+void Kiosk::write_report() {
+    if (run_.report.empty()) return;
+    nlohmann::ordered_json json;
+    const auto put = [&](const char* name, const pipeline::DurationHistogram& histogram) {
+        const pipeline::Quantiles q = histogram.quantiles();
+        json[name] = {{"median_ms", q.median_ms}, {"p95_ms", q.p95_ms}, {"max_ms", q.max_ms}};
+    };
+    json["frames"] = metrics_.frames;
+    json["camera_frames"] = camera_frames_;
+    json["dropped"] = metrics_.dropped;
+    json["garments"] = metrics_.garments;
+    json["seconds"] = last_frame_s_ - first_frame_s_;
+    json["longest_gap_s"] = longest_gap_s_;
+    put("frame_wall", frame_time_);
+    put("compute_wall", compute_time_);
+    put("source_wall", source_time_);
+    put("drawing_wall", draw_time_);
+    if (live_) put("latency_garment_state", state_latency_);
+    if (live_) put("latency_picture", picture_latency_);
+    for (std::size_t i = 0; i < pipeline::kStageCount; ++i) {
+        const auto stage = static_cast<pipeline::Stage>(i);
+        const pipeline::Quantiles q = clock_.stage(stage);
+        json["stages"][std::string(pipeline::stage_name(stage))] = {
+            {"median_ms", q.median_ms}, {"p95_ms", q.p95_ms}, {"max_ms", q.max_ms}};
+    }
+    json["picture_scale"] = scale_.now();
+    for (std::size_t i = 1; i < kFaultCount; ++i)
+        json["faults"][fault_name(static_cast<Fault>(i))] = metrics_.faults[i];
+    write_text(run_.report, json.dump(2) + "\n");
+}
+
+} // namespace toile::apps::kiosk

@@ -1,0 +1,147 @@
+// The running mirror: frame after frame from the camera to the screen, whatever happens.
+#pragma once
+
+#include "apps/global_options.h"
+#include "apps/kiosk/catalogue.h"
+#include "apps/kiosk/config.h"
+#include "apps/kiosk/display.h"
+#include "apps/kiosk/feed.h"
+#include "apps/kiosk/metrics.h"
+#include "apps/kiosk/painter.h"
+#include "apps/kiosk/picture_scale.h"
+#include "apps/kiosk/scribe.h"
+#include "apps/kiosk/script.h"
+#include "apps/kiosk/visitors.h"
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace toile::apps::kiosk {
+
+struct KioskRun {
+    KioskConfig config;
+    std::filesystem::path config_file; ///< set-up is saved there; empty: it is not saved
+    bool headless = false;
+    bool realtime = false;     ///< live clock; a window always has it
+    std::filesystem::path out; ///< headless: folder for every picture, or a .png for the last
+    Script script;
+    std::uint64_t frames = 0;     ///< 0: until the source or the user ends it
+    bool safe = false;            ///< stock plugins, a plain screen
+    std::uint64_t restarts = 0;   ///< by the watchdog so far
+    int heartbeat = -1;           ///< file descriptor that a byte is written to each frame
+    std::filesystem::path report; ///< figures of the run, as JSON; empty: none
+};
+
+/// Not movable. Everything on one thread but what Tailor, Scribe and CatalogueWatch do on theirs.
+class Kiosk {
+  public:
+    /// \throw Error when garments, words, plugins or the display are missing
+    Kiosk(KioskRun run, const GlobalOptions& global);
+    ~Kiosk();
+    Kiosk(const Kiosk&) = delete;
+    Kiosk& operator=(const Kiosk&) = delete;
+
+    /// Until it is ended. \throw Error only for what cannot be gone around
+    void run();
+
+  private:
+    struct Note {
+        std::string words;
+        double until_s = 0.0;
+    };
+
+    // kiosk.cpp: the loop
+    bool frame();
+    void take_input();
+    void take_script();
+    void inject(const std::string& fault);
+    void take_frame(double dt_s);
+    void give_picture(const pipeline::SensorFrame& pictures, double dt_s);
+    void take_results();
+    void take_changes();
+    void act(Action action, std::uint32_t person);
+    void perform(Effect effect, Shopper* shopper);
+    void change(Shopper& shopper, const Choice& choice);
+    void wear();
+    void wear_on(Shopper& shopper, DressResult result);
+    void turn_to_measure(double dt_s);
+    void note_fault(Fault fault, std::string words);
+    void setup_key(const render::WindowInput::Press& press);
+    void write_metrics(bool now);
+    void write_report();
+    void pace(double began_s) const;
+    void beat() const;
+
+    // kiosk_view.cpp: what is shown
+    void draw();
+    [[nodiscard]] std::vector<WornMeshes*> worn_meshes(bool second);
+    void draw_picture();
+    void draw_frozen();
+    void rebuild_display(const std::string& why);
+    void load_thumbnails();
+    [[nodiscard]] ScreenView view();
+    [[nodiscard]] std::vector<Button> buttons();
+    [[nodiscard]] std::optional<Vec2f> on_screen(const Vec3f& world) const;
+    [[nodiscard]] render::Placement placement(const render::Rect& to) const;
+    [[nodiscard]] std::string advice_line(const Shopper& shopper) const;
+    [[nodiscard]] std::vector<std::string> setup_lines();
+    void keep_picture();
+    void put_out_pictures();
+
+    KioskRun run_;
+    Texts texts_;
+    std::vector<Article> articles_;
+    std::unique_ptr<CatalogueWatch> watch_;
+    Tailor tailor_;
+    Scribe scribe_;
+    Feed feed_;
+    std::unique_ptr<Display> display_; ///< before visitors: their meshes are in it
+    std::vector<CarouselItem> carousel_;
+    Visitors visitors_;
+    Screens screens_;
+    Pointer pointer_;
+    Turn turn_;
+    PictureScale scale_;
+    Metrics metrics_;
+
+    pipeline::PeopleFrame people_;
+    bool live_ = false;
+    std::uint64_t number_ = 0;
+    double now_s_ = 0.0;
+    std::int64_t last_ns_ = -1;
+    std::uint32_t last_sequence_ = 0;
+    std::optional<double> clock_offset_s_; ///< wall minus capture time
+    Measuring measuring_ = Measuring::not_begun;
+    bool fresh_ = false;
+    bool quit_ = false;
+    std::optional<Reach> reach_;
+    std::optional<render::Rect> shopper_box_;
+    double reach_off_s_ = 0.0;
+    ScreenName last_screen_ = ScreenName::invalid;
+    std::deque<Note> notes_;
+    Note shopper_note_;
+    float azimuth_deg_ = 0.0f;
+    float azimuth_goal_deg_ = 0.0f;
+    double frozen_s_ = 0.0;
+    std::optional<body::Pose> frozen_from_;
+    std::optional<CameraSettings> floor_;
+    bool snapshot_ = false;
+    double hand_at_s_ = -1e9; ///< when a hand was raised last, or something was pressed
+    double metrics_at_s_ = 0.0;
+    pipeline::StageClock clock_;
+    pipeline::DurationHistogram frame_time_;
+    pipeline::DurationHistogram compute_time_; ///< all but drawing and what the picture needs
+    pipeline::DurationHistogram source_time_;  ///< camera and tracker
+    double picture_s_ = 0.0; ///< of this frame: pictures given to the renderer, light
+    pipeline::DurationHistogram state_latency_;
+    pipeline::DurationHistogram picture_latency_;
+    pipeline::DurationHistogram draw_time_;
+    double first_frame_s_ = 0.0;
+    double last_frame_s_ = 0.0;
+    double longest_gap_s_ = 0.0;
+    std::uint64_t camera_frames_ = 0;
+};
+
+} // namespace toile::apps::kiosk

@@ -1,0 +1,163 @@
+#include "apps/kiosk/watchdog.h"
+
+#include "apps/kiosk/restart_policy.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "host/job.h"
+#include "pipeline/stage_clock.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+extern char** environ; // NOLINT(readability-redundant-declaration): POSIX asks for it
+
+namespace toile::apps::kiosk {
+namespace {
+
+constexpr int kPoll_ms = 50;
+constexpr double kEarly_s = 30.0;
+
+/// One run of the mirror.
+class Child {
+  public:
+    explicit Child(const std::vector<std::string>& arguments) {
+        std::array<int, 2> ends{-1, -1};
+        if (pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC) != 0)
+            throw Error(std::string("the watchdog has no pipe: ") + std::strerror(errno));
+        read_end_ = ends[0];
+        std::vector<std::string> words = arguments;
+        constexpr int kChildEnd = 3;
+        words.insert(words.end(), {"--heartbeat", std::to_string(kChildEnd)});
+        std::vector<char*> argv;
+        argv.reserve(words.size() + 1);
+        for (std::string& word : words)
+            argv.push_back(word.data());
+        argv.push_back(nullptr);
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_adddup2(&actions, ends[1], kChildEnd);
+        const int code = posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ);
+        posix_spawn_file_actions_destroy(&actions);
+        close(ends[1]);
+        if (code != 0) {
+            close(read_end_);
+            throw Error("cannot start '" + words.front() + "': " + std::strerror(code));
+        }
+    }
+    ~Child() {
+        if (pid_ > 0) end(SIGKILL);
+        close(read_end_);
+    }
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+
+    /// Waits a little for a sign of life.
+    bool alive_sign() {
+        pollfd fd{read_end_, POLLIN, 0};
+        (void)poll(&fd, 1, kPoll_ms);
+        std::array<char, 256> bytes{};
+        return read(read_end_, bytes.data(), bytes.size()) > 0;
+    }
+    /// True once it has ended.
+    bool ended(int& status) {
+        if (waitpid(pid_, &status, WNOHANG) != pid_) return false;
+        pid_ = -1;
+        return true;
+    }
+    int end(int signal) {
+        int status = 0;
+        kill(pid_, signal);
+        while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+        }
+        pid_ = -1;
+        return status;
+    }
+
+  private:
+    pid_t pid_ = -1;
+    int read_end_ = -1;
+};
+
+struct Outcome {
+    bool over = false; ///< by itself or interrupted
+    int status = 0;
+    std::string why; ///< of a crash or stall
+};
+
+// `down_s`: since when there is no mirror; 0 at the first start.
+Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOptions& options,
+                 const RestartPolicy& policy, double down_s) {
+    Child child(arguments);
+    double sign_s = pipeline::wall_seconds();
+    double first_sign_s = sign_s;
+    bool signed_once = false;
+    for (;;) {
+        if (child.alive_sign()) {
+            sign_s = pipeline::wall_seconds();
+            if (!signed_once && down_s > 0.0)
+                log::info("the mirror is up again after " +
+                          std::to_string(static_cast<int>(1000.0 * (sign_s - down_s))) + " ms");
+            if (!signed_once) first_sign_s = sign_s;
+            signed_once = true;
+        }
+        int status = 0;
+        if (child.ended(status)) {
+            if (WIFEXITED(status) && (signed_once || WEXITSTATUS(status) == 2))
+                return {WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 2, WEXITSTATUS(status),
+                        "it ended with status " + std::to_string(WEXITSTATUS(status))};
+            if (WIFEXITED(status)) // it never came up: starting it again would not help
+                return {true, WEXITSTATUS(status), ""};
+            return {false, 1, std::string("it crashed: ") + strsignal(WTERMSIG(status))};
+        }
+        const double silent_s = pipeline::wall_seconds() - sign_s;
+        if (host::interrupt_flag()) return {true, child.end(SIGTERM) == 0 ? 0 : 1, ""};
+        const bool early = pipeline::wall_seconds() - first_sign_s < kEarly_s;
+        const double stall_s = early ? std::max(options.stall_s, options.early_s) : options.stall_s;
+        if (silent_s > (signed_once ? stall_s : options.start_s)) {
+            child.end(SIGKILL);
+            return {false, 1,
+                    "it gave no sign of life for " +
+                        std::to_string(static_cast<int>(silent_s * 1000.0)) + " ms"};
+        }
+        if (policy.recovered(pipeline::wall_seconds())) {
+            child.end(SIGTERM);
+            return {false, 0, ""};
+        }
+    }
+}
+
+} // namespace
+
+int watch(const std::vector<std::string>& arguments, const WatchdogOptions& options) {
+    host::catch_interrupts();
+    RestartPolicy policy;
+    double down_s = 0.0;
+    for (;;) {
+        std::vector<std::string> words = arguments;
+        words.insert(words.end(), {"--restarts", std::to_string(policy.restarts())});
+        if (policy.safe()) words.emplace_back("--safe");
+        const Outcome outcome = run_once(words, options, policy, down_s);
+        if (outcome.over) return outcome.status;
+        down_s = pipeline::wall_seconds();
+        if (outcome.why.empty()) {
+            log::info("the mirror leaves safe mode");
+            policy.leave_safe_mode();
+            continue;
+        }
+        const auto decision = policy.crashed(pipeline::wall_seconds());
+        log::error("the mirror is started again" +
+                   std::string(decision.safe ? " in safe mode" : "") + ": " + outcome.why);
+        std::this_thread::sleep_for(std::chrono::duration<double>(decision.pause_s));
+    }
+}
+
+} // namespace toile::apps::kiosk
