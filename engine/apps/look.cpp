@@ -205,7 +205,8 @@ Spoil spoil_from_name(const std::string& name) {
     if (name == "shift") return Spoil::shift;
     if (name == "shadows") return Spoil::shadows;
     if (name == "body") return Spoil::body;
-    throw UsageError("--spoil " + name + ": no such way; shift, shadows or body");
+    if (name == "occlusion") return Spoil::occlusion;
+    throw UsageError("--spoil " + name + ": no such way; shift, shadows, body or occlusion");
 }
 
 StageBox::StageBox(const pipeline::DressedPerson& person) {

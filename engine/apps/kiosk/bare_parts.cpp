@@ -13,6 +13,8 @@ constexpr float kBeneath_m = 0.10f; // along the normal
 constexpr float kNearer_m = 0.06f;  // what is seen may lie so much before the tracked skin ...
 constexpr float kFarther_m = 0.02f; // ... or behind it: farther is the trunk that a hand lies on
 constexpr float kAround_m = 0.02f;
+constexpr int kCell = 8;           // pixels
+constexpr float kBefore_m = 0.01f; // a hand lies at least so much before the tracked trunk
 
 bool may_be_bare(body::Part part) {
     using body::Part;
@@ -21,6 +23,35 @@ bool may_be_bare(body::Part part) {
 }
 
 } // namespace
+
+void TrunkDepth::fill(const pipeline::DressedPerson& person, const imaging::Intrinsics& camera,
+                      const Eigen::Isometry3d& place, int width, int height) {
+    columns_ = width / kCell + 1;
+    cells_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(height / kCell + 1),
+                  {});
+    const Eigen::Isometry3d from_world = place.inverse();
+    const Vec3f eye = place.translation().cast<float>();
+    const auto& parts = person.body().model().parts;
+    const auto& posed = person.posed();
+    for (std::size_t v = 0; v < posed.positions.size(); ++v) {
+        if (may_be_bare(parts[v]) || posed.normals[v].dot(eye - posed.positions[v]) <= 0.0f)
+            continue;
+        const Vec3d p = from_world * posed.positions[v].cast<double>();
+        const auto pixel = imaging::project(camera, p);
+        if (!pixel) continue;
+        const auto x = static_cast<int>(std::lround(pixel->x()));
+        const auto y = static_cast<int>(std::lround(pixel->y()));
+        if (x < 0 || y < 0 || x >= width || y >= height) continue;
+        Cell& cell = cells_[static_cast<std::size_t>(y / kCell * columns_ + x / kCell)];
+        cell.sum -= static_cast<float>(p.z());
+        ++cell.count;
+    }
+}
+
+bool TrunkDepth::reaches(int x, int y, float metres) const {
+    const Cell& cell = cells_[static_cast<std::size_t>(y / kCell * columns_ + x / kCell)];
+    return cell.count > 0 && metres > cell.sum / static_cast<float>(cell.count) - kBefore_m;
+}
 
 std::vector<std::uint32_t> bare_vertices(const pipeline::DressedPerson& person) {
     const body::BodyModel& model = person.body().model();
@@ -49,8 +80,8 @@ std::vector<std::uint32_t> bare_vertices(const pipeline::DressedPerson& person) 
 
 void lift_bare_parts(const pipeline::DressedPerson& person,
                      const std::vector<std::uint32_t>& vertices, const imaging::Intrinsics& camera,
-                     const Eigen::Isometry3d& place, const imaging::DepthImage& seen, float lift_m,
-                     int reach, imaging::DepthImage& out) {
+                     const Eigen::Isometry3d& place, const imaging::DepthImage& seen,
+                     const TrunkDepth& trunk, float lift_m, int reach, imaging::DepthImage& out) {
     const Eigen::Isometry3d from_world = place.inverse();
     for (const std::uint32_t v : vertices) {
         const Vec3d p = from_world * person.posed().positions[v].cast<double>();
@@ -70,7 +101,8 @@ void lift_bare_parts(const pipeline::DressedPerson& person,
         for (int row = y - reach; row <= y + reach; ++row)
             for (int column = x - reach; column <= x + reach; ++column) {
                 const std::size_t i = index(column, row);
-                if (std::abs(seen.metres[i] - here) < kAround_m)
+                if (std::abs(seen.metres[i] - here) < kAround_m &&
+                    !trunk.reaches(column, row, seen.metres[i]))
                     out.metres[i] = seen.metres[i] - lift_m;
             }
     }

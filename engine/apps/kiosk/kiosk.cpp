@@ -64,6 +64,7 @@ Kiosk::Kiosk(KioskRun run, const GlobalOptions& global)
       screens_(times_of(run_.config), run_.config.measure, run_.safe),
       pointer_({run_.config.dwell_s}), scale_(1.0f), live_(run_.realtime || !run_.headless) {
     display_ = std::make_unique<Display>(run_.config, run_.headless);
+    display_->picture().spoil(run_.spoil);
     load_thumbnails();
     if (live_) watch_ = std::make_unique<CatalogueWatch>(articles_, kLookEvery_s);
     metrics_.restarts = run_.restarts;

@@ -12,6 +12,7 @@
 #include "apps/kiosk/scribe.h"
 #include "apps/kiosk/script.h"
 #include "apps/kiosk/visitors.h"
+#include "apps/spoil.h"
 
 #include <deque>
 #include <memory>
@@ -31,6 +32,7 @@ struct KioskRun {
     bool safe = false;            ///< stock plugins, a plain screen
     std::uint64_t restarts = 0;   ///< by the watchdog so far
     int heartbeat = -1;           ///< file descriptor that a byte is written to each frame
+    Spoil spoil = Spoil::none;    ///< how the camera's view is drawn wrongly, for tests
     std::filesystem::path report; ///< figures of the run, as JSON; empty: none
 };
 
@@ -77,6 +79,7 @@ class Kiosk {
     // kiosk_view.cpp: what is shown
     void draw();
     [[nodiscard]] std::vector<WornMeshes*> worn_meshes(bool second);
+    void hide_cloth(bool second);
     void draw_picture();
     void draw_frozen();
     void rebuild_display(const std::string& why);

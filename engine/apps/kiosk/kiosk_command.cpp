@@ -3,6 +3,7 @@
 #include "apps/kiosk/kiosk.h"
 #include "apps/kiosk/preview.h"
 #include "apps/kiosk/watchdog.h"
+#include "apps/spoil.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "host/job.h"
@@ -15,7 +16,7 @@ namespace toile::apps {
 namespace {
 
 struct KioskOptions {
-    std::string config, source, language, orientation, screen, out, script, preview, report;
+    std::string config, source, language, orientation, screen, out, script, preview, report, spoil;
     bool headless = false, realtime = false, safe = false, no_watchdog = false;
     std::uint64_t frames = 0, restarts = 0;
     int heartbeat = -1;
@@ -57,6 +58,7 @@ kiosk::KioskRun run_of(const KioskOptions& options) {
     out.restarts = options.restarts;
     out.heartbeat = options.heartbeat;
     out.report = options.report;
+    out.spoil = spoil_from_name(options.spoil);
     return out;
 }
 
@@ -74,6 +76,7 @@ std::vector<std::string> child_arguments(const KioskOptions& options, const Glob
     add("--out", options.out);
     add("--script", options.script);
     add("--report", options.report);
+    add("--spoil", options.spoil);
     if (options.headless) out.emplace_back("--headless");
     if (options.realtime) out.emplace_back("--realtime");
     if (options.frames > 0) add("--frames", std::to_string(options.frames));
@@ -148,6 +151,9 @@ void add_kiosk_commands(CLI::App& app, const GlobalOptions& global) {
         ->type_name("FILE");
     command->add_flag("--no-watchdog", options->no_watchdog, "One process, not started again");
     // Between the watchdog and the mirror.
+    command->add_option("--spoil", options->spoil, "Draws the camera's view wrongly on purpose")
+        ->type_name("shift|shadows|occlusion")
+        ->group("For tests of pictures");
     command->add_flag("--safe", options->safe)->group("");
     command->add_option("--restarts", options->restarts)->group("");
     command->add_option("--heartbeat", options->heartbeat)->group("");

@@ -55,6 +55,7 @@ void Kiosk::rebuild_display(const std::string& why) {
             if (look) look->meshes.reset();
     display_.reset();
     display_ = std::make_unique<Display>(run_.config, run_.headless);
+    display_->picture().spoil(run_.spoil);
     carousel_.clear();
     load_thumbnails();
     for (Shopper& shopper : visitors_.all())
@@ -216,17 +217,24 @@ std::vector<WornMeshes*> Kiosk::worn_meshes(bool second) {
     return out;
 }
 
+// What a look leaves bare differs from what the other one does.
+void Kiosk::hide_cloth(bool second) {
+    std::vector<LivePicture::Wearer> wearers;
+    for (const Shopper& shopper : visitors_.all()) {
+        const bool other = second && &shopper == visitors_.first();
+        const std::optional<WornLook>& look = shopper.looks[other ? 1 : 0];
+        if (look && shopper.here) wearers.push_back({look->person.get(), &look->bare});
+    }
+    display_->picture().hide_by(feed_.pictures(), wearers);
+}
+
 // Camera's picture with everybody's clothes; two looks of the first shopper side by side.
 void Kiosk::draw_picture() {
     LivePicture& picture = display_->picture();
     if (picture.empty()) return;
-    std::vector<LivePicture::Wearer> wearers;
-    for (const Shopper& shopper : visitors_.all())
-        for (const std::optional<WornLook>& look : shopper.looks)
-            if (look && shopper.here) wearers.push_back({look->person.get(), &look->bare});
-    if (fresh_ && feed_.up()) picture.hide_by(feed_.pictures(), wearers);
     const bool two = screens_.comparing() && screens_.now() == ScreenName::mirror;
     for (std::size_t look = 0; look < (two ? 2u : 1u); ++look) {
+        if ((fresh_ || two) && feed_.up()) hide_cloth(look == 1);
         picture.draw_mirror(worn_meshes(look == 1), scale_.now());
         render::Rect to = whole(display_->screen());
         render::Placement place = placement(to);

@@ -98,9 +98,11 @@ void LivePicture::hide_by(const pipeline::SensorFrame& frame, std::span<const We
     hiding_.width = width_;
     hiding_.height = height_;
     hiding_.metres.assign(frame.depth.metres.begin(), frame.depth.metres.end());
-    for (const Wearer& wearer : wearers)
-        lift_bare_parts(*wearer.person, *wearer.bare, camera_, place_, frame.depth,
+    for (const Wearer& wearer : wearers) {
+        trunk_.fill(*wearer.person, camera_, place_, width_, height_);
+        lift_bare_parts(*wearer.person, *wearer.bare, camera_, place_, frame.depth, trunk_,
                         kTolerance_m + kHandInCloth_m, kReach, hiding_);
+    }
     (void)renderer_.update_depth(depth_, hiding_);
 }
 
@@ -172,7 +174,17 @@ void LivePicture::draw_mirror(std::span<WornMeshes* const> worn, float scale) {
     } else {
         scene_.lighting = render::studio_lighting(scene_.camera);
     }
+    spoil_scene();
     renderer_.draw(scene_);
+}
+
+void LivePicture::spoil_scene() {
+    if (spoil_ == Spoil::occlusion) scene_.background.depth = render::TextureId::none;
+    for (render::Instance& instance : scene_.instances) {
+        if (spoil_ == Spoil::shadows) instance.casts_shadow = false;
+        if (spoil_ == Spoil::shift && instance.draw == render::Instance::Draw::visible)
+            instance.world_from_mesh.translation += Vec3f(0.01f, 0.0f, 0.0f);
+    }
 }
 
 imaging::Image LivePicture::cloth_mask(std::span<WornMeshes* const> worn) {

@@ -1,8 +1,10 @@
 // The mirror's picture: what the camera sees with clothes over it, or a room with the avatar.
 #pragma once
 
+#include "apps/kiosk/bare_parts.h"
 #include "apps/kiosk/light.h"
 #include "apps/kiosk/worn_meshes.h"
+#include "apps/spoil.h"
 #include "pipeline/sensor_source.h"
 #include "render/frame_uniforms.h"
 
@@ -59,16 +61,22 @@ class LivePicture {
     [[nodiscard]] int camera_width() const { return width_; }
     [[nodiscard]] int camera_height() const { return height_; }
 
+    /// Draws the camera's view wrongly from now on, for tests.
+    void spoil(Spoil how) { spoil_ = how; }
+
     /// The driver compiles a shader when it is first drawn with: a second that no shopper shall
     /// wait. Call it while nobody is there.
     void warm_up();
 
   private:
+    void spoil_scene();
+
     render::Renderer renderer_;
     render::Scene scene_;
     render::TextureId picture_ = render::TextureId::none;
     render::TextureId depth_ = render::TextureId::none;
     imaging::DepthImage hiding_; ///< scratch
+    TrunkDepth trunk_;           ///< scratch
     imaging::Intrinsics camera_;
     Eigen::Isometry3d place_ = Eigen::Isometry3d::Identity();
     int width_ = 0;
@@ -77,6 +85,7 @@ class LivePicture {
     std::uint32_t sequence_ = 0;
     PictureTone tone_;
     PictureLight light_;
+    Spoil spoil_ = Spoil::none;
 };
 
 } // namespace toile::apps::kiosk
