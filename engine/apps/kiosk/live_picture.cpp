@@ -1,6 +1,5 @@
 #include "apps/kiosk/live_picture.h"
 
-#include "apps/kiosk/bare_parts.h"
 #include "imaging/srgb.h"
 #include "render/views.h"
 
@@ -99,8 +98,10 @@ void LivePicture::hide_by(const pipeline::SensorFrame& frame, std::span<const We
     hiding_.height = height_;
     hiding_.metres.assign(frame.depth.metres.begin(), frame.depth.metres.end());
     for (const Wearer& wearer : wearers) {
-        trunk_.fill(*wearer.person, camera_, place_, width_, height_);
-        lift_bare_parts(*wearer.person, *wearer.bare, camera_, place_, frame.depth, trunk_,
+        const auto& posed = wearer.person->posed();
+        const TrackedSkin skin{posed.positions, posed.normals, wearer.person->body().model().parts};
+        trunk_.fill(skin, camera_, place_, width_, height_);
+        lift_bare_parts(skin, *wearer.bare, camera_, place_, frame.depth, trunk_,
                         kTolerance_m + kHandInCloth_m, kReach, hiding_);
     }
     (void)renderer_.update_depth(depth_, hiding_);

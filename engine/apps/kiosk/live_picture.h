@@ -1,7 +1,7 @@
 // The mirror's picture: what the camera sees with clothes over it, or a room with the avatar.
 #pragma once
 
-#include "apps/kiosk/bare_parts.h"
+#include "apps/kiosk/hiding_depth.h"
 #include "apps/kiosk/light.h"
 #include "apps/kiosk/worn_meshes.h"
 #include "apps/spoil.h"

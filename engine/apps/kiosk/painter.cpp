@@ -337,7 +337,7 @@ class Painter {
             std::string words = *one;
             const TextStyle style{size, {255, 214, 150, 255}, Align::start, false};
             while (words.size() > 8 && canvas_.text_width(words, style) > w_ - 2.0f * size)
-                words = words.substr(0, words.size() - 8) + "...";
+                words = shortened(words);
             canvas_.fill({0, y - 0.15f * size, w_, 1.35f * size}, {0, 0, 0, 190});
             canvas_.text({size, y}, words, style);
         }

@@ -132,4 +132,15 @@ Texts::with(Text text,
     return out;
 }
 
+std::string shortened(const std::string& words) {
+    constexpr std::size_t kFewer = 8; // bytes
+    std::size_t end = words.size() - std::min(kFewer, words.size());
+    const auto inside_letter = [&](std::size_t at) {
+        return at > 0 && (static_cast<unsigned char>(words[at]) & 0xC0u) == 0x80u;
+    };
+    while (inside_letter(end))
+        --end;
+    return words.substr(0, end) + "...";
+}
+
 } // namespace toile::apps::kiosk

@@ -107,5 +107,7 @@ class Texts {
 [[nodiscard]] const char* text_key(Text text);
 /// Languages that are shipped or stand in TOILE_DATA_PATH, sorted.
 [[nodiscard]] std::vector<std::string> list_languages();
+/// Some letters fewer at the end (UTF-8, none cut in two), and three dots; shorter in bytes.
+[[nodiscard]] std::string shortened(const std::string& words);
 
 } // namespace toile::apps::kiosk

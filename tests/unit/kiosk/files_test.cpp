@@ -62,6 +62,13 @@ TEST(KioskTexts, EveryLanguageHasEveryKeyAndTheSameBlanks) {
               "Between M and L: both can be right");
 }
 
+TEST(KioskTexts, ALineIsShortenedBetweenLetters) {
+    EXPECT_EQ(shortened("0123456789abcdef"), "01234567...");
+    EXPECT_EQ(shortened("0123456\u00e4abcdefg"),
+              "0123456..."); // the umlaut's second byte is the 8th
+    EXPECT_EQ(shortened("\u00fc"), "...");
+}
+
 TEST(KioskTexts, AMissingAndAnUnknownKeyAreNamed) {
     const TemporaryFolder folder;
     nlohmann::json json = parse_json_file(kTexts / "de.json");
