@@ -29,22 +29,9 @@ void check_folder(const fs::path& file, const char* option) {
 }
 
 /// At most `triangles`, and how far the full surface is from it.
-ColoredMesh decimated(const ColoredMesh& full, std::size_t triangles,
-                      nlohmann::ordered_json& report) {
-    // Triangles less twice the vertices: -4 for a ball, more with handles; collapses keep it.
-    const auto excess = static_cast<std::ptrdiff_t>(full.mesh.triangles.size()) -
-                        2 * static_cast<std::ptrdiff_t>(full.mesh.positions.size());
-    const std::ptrdiff_t vertices = (static_cast<std::ptrdiff_t>(triangles) - excess) / 2;
-    const geometry::Decimation kept = geometry::decimate(
-        full.mesh, static_cast<std::size_t>(std::max<std::ptrdiff_t>(vertices, 4)));
-    ColoredMesh out;
-    out.mesh.triangles = kept.triangles;
-    for (const std::uint32_t v : kept.vertices) {
-        out.mesh.positions.push_back(full.mesh.positions[v]);
-        if (!full.colors.empty()) out.colors.push_back(full.colors[v]);
-    }
-    out.mesh.normals.resize(out.mesh.positions.size());
-    geometry::vertex_normals(out.mesh.positions, out.mesh.triangles, out.mesh.normals);
+ColoredMesh coarser(const ColoredMesh& full, std::size_t triangles,
+                    nlohmann::ordered_json& report) {
+    ColoredMesh out = assets::decimated(full, triangles);
     const geometry::NearestSurface surface(out.mesh.positions, out.mesh.triangles);
     std::vector<float> errors;
     for (const Vec3f& p : full.mesh.positions)
@@ -162,7 +149,7 @@ void save(pipeline::ScannedSurface scanned, const ScanOutput& output, host::Regi
           host::Services& services, const toile_limits& limits) {
     ColoredMesh& surface = scanned.surface;
     if (output.triangles > 0 && output.triangles < surface.mesh.triangles.size())
-        surface = decimated(surface, output.triangles, scanned.report);
+        surface = coarser(surface, output.triangles, scanned.report);
     scanned.report["vertices"] = surface.mesh.positions.size();
     scanned.report["triangles"] = surface.mesh.triangles.size();
     std::vector<ColoredMesh> shown;

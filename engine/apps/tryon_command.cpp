@@ -219,6 +219,7 @@ void add_tryon_commands(CLI::App& app, const GlobalOptions& global) {
     command
         ->add_option("--spoil", options->spoil,
                      "Draws wrongly on purpose: garments 1 cm to the side, no shadows, no body")
+        ->check(CLI::IsMember({"shift", "shadows", "body"}))
         ->type_name("shift|shadows|body")
         ->group("For tests of pictures");
     command->footer("Example: toile tryon --body woman --garment t-shirt,skirt --views front,back "

@@ -1,5 +1,7 @@
 #include "assets/colored_mesh.h"
 
+#include "geometry/decimate.h"
+
 #include "assets/files.h"
 #include "core/error.h"
 #include "imaging/srgb.h"
@@ -120,6 +122,25 @@ Scene scene_of(const ColoredMesh& mesh, const std::string& name) {
     node.mesh = 0;
     scene.nodes.push_back(node);
     return scene;
+}
+
+ColoredMesh decimated(const ColoredMesh& mesh, std::size_t triangles) {
+    if (mesh.mesh.triangles.size() <= triangles) return mesh;
+    // Triangles less twice the vertices: -4 for a ball, more with handles; collapses keep it.
+    const auto excess = static_cast<std::ptrdiff_t>(mesh.mesh.triangles.size()) -
+                        2 * static_cast<std::ptrdiff_t>(mesh.mesh.positions.size());
+    const std::ptrdiff_t vertices = (static_cast<std::ptrdiff_t>(triangles) - excess) / 2;
+    const geometry::Decimation kept = geometry::decimate(
+        mesh.mesh, static_cast<std::size_t>(std::max<std::ptrdiff_t>(vertices, 4)));
+    ColoredMesh out;
+    out.mesh.triangles = kept.triangles;
+    for (const std::uint32_t v : kept.vertices) {
+        out.mesh.positions.push_back(mesh.mesh.positions[v]);
+        if (!mesh.colors.empty()) out.colors.push_back(mesh.colors[v]);
+    }
+    out.mesh.normals.resize(out.mesh.positions.size());
+    geometry::vertex_normals(out.mesh.positions, out.mesh.triangles, out.mesh.normals);
+    return out;
 }
 
 } // namespace toile::assets

@@ -25,6 +25,9 @@ struct ColoredMesh {
 /// One node, one mesh, drawn from both sides when it has colours.
 [[nodiscard]] Scene scene_of(const ColoredMesh& mesh, const std::string& name);
 
+/// At most so many triangles, with colours and normals; the same mesh when it has no more.
+[[nodiscard]] ColoredMesh decimated(const ColoredMesh& mesh, std::size_t triangles);
+
 /// Colour of a texture at a place, between its texels; repeats beyond [0, 1].
 [[nodiscard]] Rgba8 texture_color(const imaging::Image& image, const Vec2f& at);
 

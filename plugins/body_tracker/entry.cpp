@@ -5,6 +5,7 @@
 #include "body_tracker/other_body.h"
 #include "body_tracker/parts_tool.h"
 #include "boundary/shaped_body.h"
+#include "boundary/stream_camera.h"
 #include "core/error.h"
 #include "sdk/body_source.h"
 #include "sdk/parameters.h"
@@ -135,26 +136,16 @@ class BodyTracker {
     }
 
     void start(std::uint32_t most_people) {
-        toile::imaging::Intrinsics camera;
-        camera.width = static_cast<int>(std::min(stream_.depth.width, 1u << 14));
-        camera.height = static_cast<int>(std::min(stream_.depth.height, 1u << 14));
-        camera.fx = stream_.depth.fx;
-        camera.fy = stream_.depth.fy;
-        camera.cx = stream_.depth.cx;
-        camera.cy = stream_.depth.cy;
-        std::copy_n(stream_.depth.distortion, 8, camera.distortion.begin());
-        tracker::CameraPlace place;
-        if (stream_.has_world != 0) {
-            place.emplace(Eigen::Isometry3d::Identity());
-            std::copy_n(stream_.world_from_camera, 16, place->matrix().data());
-        }
+        const toile::boundary::StreamCamera camera = toile::boundary::camera_of(stream_);
+        const tracker::CameraPlace place = camera.world_from_camera;
         tracker::TrackingOptions options;
         options.most_people = most_people;
         options.person.forest = forest_;
         options.person.smoothing.on = switches_[0] != 0.0;
         options.person.learn_shape = switches_[1] != 0.0;
         options.person.recover = switches_[2] != 0.0;
-        tracking_ = std::make_unique<tracker::BodyTracking>(*model_, camera, place, options);
+        tracking_ =
+            std::make_unique<tracker::BodyTracking>(*model_, camera.intrinsics, place, options);
         world_ = {};
         if (place) {
             const toile::Quatf turn(place->linear().cast<float>());

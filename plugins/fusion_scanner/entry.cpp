@@ -1,4 +1,5 @@
 // Kind toile.scanner/1: one camera, one rigid subject, places not known.
+#include "boundary/stream_camera.h"
 #include "core/error.h"
 #include "fusion_scanner/fusion_session.h"
 #include "sdk/parameters.h"
@@ -131,20 +132,8 @@ class FusionScanner {
     }
 
     static fusion::SessionCamera camera_of(const toile_stream& stream) {
-        fusion::SessionCamera out;
-        out.intrinsics.width = static_cast<int>(stream.depth.width);
-        out.intrinsics.height = static_cast<int>(stream.depth.height);
-        out.intrinsics.fx = stream.depth.fx;
-        out.intrinsics.fy = stream.depth.fy;
-        out.intrinsics.cx = stream.depth.cx;
-        out.intrinsics.cy = stream.depth.cy;
-        std::copy_n(stream.depth.distortion, 8, out.intrinsics.distortion.begin());
-        if (stream.has_world != 0) {
-            Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
-            std::copy_n(stream.world_from_camera, 16, place.matrix().data());
-            out.world_from_camera = place;
-        }
-        return out;
+        const toile::boundary::StreamCamera camera = toile::boundary::camera_of(stream);
+        return {camera.intrinsics, camera.world_from_camera};
     }
 
     [[nodiscard]] fusion::SessionOptions options() const {

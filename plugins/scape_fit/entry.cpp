@@ -1,6 +1,7 @@
 // Kind toile.body_source/1, fed with a scan or with frames of cameras, and toile.body_fit/1.
 #include "body/body_model.h"
 #include "boundary/shaped_body.h"
+#include "boundary/stream_camera.h"
 #include "core/error.h"
 #include "scape_fit/fit_session.h"
 #include "sdk/body_fit.h"
@@ -166,21 +167,8 @@ class ScapeFit {
     }
 
     static fit::FitCamera camera_of(const toile_stream& stream) {
-        fit::FitCamera out;
-        out.intrinsics.width = static_cast<int>(stream.depth.width);
-        out.intrinsics.height = static_cast<int>(stream.depth.height);
-        out.intrinsics.fx = stream.depth.fx;
-        out.intrinsics.fy = stream.depth.fy;
-        out.intrinsics.cx = stream.depth.cx;
-        out.intrinsics.cy = stream.depth.cy;
-        std::copy_n(stream.depth.distortion, 8, out.intrinsics.distortion.begin());
-        toile::imaging::check_intrinsics(out.intrinsics);
-        if (stream.has_world != 0) {
-            Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
-            std::copy_n(stream.world_from_camera, 16, place.matrix().data());
-            out.world_from_camera = place;
-        }
-        return out;
+        const toile::boundary::StreamCamera camera = toile::boundary::camera_of(stream);
+        return {camera.intrinsics, camera.world_from_camera};
     }
 
     static toile::geometry::TriangleMesh mesh_of(const toile_mesh& scan) {

@@ -3,7 +3,6 @@
 #include "assets/files.h"
 #include "assets/skins.h"
 #include "body/skeleton.h"
-#include "body/surface_cache.h"
 #include "core/bytes.h"
 #include "core/json.h"
 #include "geometry/nearest_surface.h"
@@ -44,14 +43,7 @@ class ScanTest : public testing::Test {
         return run_toile(words);
     }
     static geometry::TriangleMesh truth() {
-        const body::SurfaceCache cache = body::open_surface_cache(*folder_ / "turn" / "truth");
-        geometry::TriangleMesh out = assets::colored_mesh_of(cache.scene).mesh;
-        std::vector<std::vector<Vec3f>> positions;
-        cache.load(0, positions);
-        out.positions.clear();
-        for (const auto& part : positions)
-            out.positions.insert(out.positions.end(), part.begin(), part.end());
-        return out;
+        return assets::load_colored_mesh(*folder_ / "turn" / "truth" / "surfaces.glb").mesh;
     }
 
     static inline std::unique_ptr<TemporaryFolder> folder_;

@@ -3,7 +3,6 @@
 // out=FILE.ply. Shares of time on stderr.
 #include "assets/colored_mesh.h"
 #include "assets/files.h"
-#include "body/surface_cache.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "imaging/capture_folder.h"
@@ -114,15 +113,9 @@ void print(const char* what, const evaluation::Deviation& d) {
 
 /// A mesh file, or the first frame of a recording's surface cache.
 geometry::TriangleMesh load_truth(const std::string& name) {
-    if (!std::filesystem::is_directory(name)) return assets::load_colored_mesh(name).mesh;
-    const body::SurfaceCache cache = body::open_surface_cache(name);
-    geometry::TriangleMesh out = assets::colored_mesh_of(cache.scene).mesh;
-    std::vector<std::vector<Vec3f>> positions;
-    cache.load(0, positions);
-    out.positions.clear();
-    for (const auto& part : positions)
-        out.positions.insert(out.positions.end(), part.begin(), part.end());
-    return out;
+    const std::filesystem::path file = name;
+    const bool cache = std::filesystem::is_directory(file);
+    return assets::load_colored_mesh(cache ? file / "surfaces.glb" : file).mesh;
 }
 
 void compare(const geometry::TriangleMesh& scan, const geometry::TriangleMesh& truth,

@@ -13,19 +13,6 @@ namespace {
 using namespace toile;
 namespace fs = std::filesystem;
 
-assets::ColoredMesh coarser(const assets::ColoredMesh& full, std::size_t triangles) {
-    const auto kept = geometry::decimate(full.mesh, triangles / 2 + 2);
-    assets::ColoredMesh out;
-    out.mesh.triangles = kept.triangles;
-    for (const std::uint32_t v : kept.vertices) {
-        out.mesh.positions.push_back(full.mesh.positions[v]);
-        if (!full.colors.empty()) out.colors.push_back(full.colors[v]);
-    }
-    out.mesh.normals.resize(out.mesh.positions.size());
-    geometry::vertex_normals(out.mesh.positions, out.mesh.triangles, out.mesh.normals);
-    return out;
-}
-
 /// Milliseconds of the quickest of five readings.
 double import_ms(const fs::path& file) {
     double best = 1e9;
@@ -67,7 +54,7 @@ int main(int argc, char** argv) {
         level(full, full, folder);
         for (const std::size_t count : {200'000, 100'000, 50'000, 20'000, 10'000, 5'000, 2'000})
             if (count < full.mesh.triangles.size()) {
-                mesh = coarser(mesh, count);
+                mesh = assets::decimated(mesh, count);
                 level(full, mesh, folder);
             }
         fs::remove_all(folder);

@@ -14,6 +14,19 @@ constexpr float kBefore_m = 0.01f; // a hand lies at least so much before the tr
 
 } // namespace
 
+std::optional<SeenPixel> seen_pixel(const imaging::Intrinsics& camera,
+                                    const Eigen::Isometry3d& from_world, const Vec3f& at, int width,
+                                    int height, int border) {
+    const Vec3d p = from_world * at.cast<double>();
+    const auto pixel = imaging::project(camera, p);
+    if (!pixel) return std::nullopt;
+    const SeenPixel out{static_cast<int>(std::lround(pixel->x())),
+                        static_cast<int>(std::lround(pixel->y())), -static_cast<float>(p.z())};
+    const bool inside =
+        out.x >= border && out.y >= border && out.x < width - border && out.y < height - border;
+    return inside ? std::optional(out) : std::nullopt;
+}
+
 bool is_arm(body::Part part) {
     using body::Part;
     return part == Part::left_lower_arm || part == Part::right_lower_arm ||
@@ -29,14 +42,10 @@ void TrunkDepth::fill(const TrackedSkin& skin, const imaging::Intrinsics& camera
     const Vec3f eye = place.translation().cast<float>();
     for (std::size_t v = 0; v < skin.positions.size(); ++v) {
         if (is_arm(skin.parts[v]) || skin.normals[v].dot(eye - skin.positions[v]) <= 0.0f) continue;
-        const Vec3d p = from_world * skin.positions[v].cast<double>();
-        const auto pixel = imaging::project(camera, p);
-        if (!pixel) continue;
-        const auto x = static_cast<int>(std::lround(pixel->x()));
-        const auto y = static_cast<int>(std::lround(pixel->y()));
-        if (x < 0 || y < 0 || x >= width || y >= height) continue;
-        Cell& cell = cells_[static_cast<std::size_t>(y / kCell * columns_ + x / kCell)];
-        cell.sum -= static_cast<float>(p.z());
+        const auto seen = seen_pixel(camera, from_world, skin.positions[v], width, height);
+        if (!seen) continue;
+        Cell& cell = cells_[static_cast<std::size_t>(seen->y / kCell * columns_ + seen->x / kCell)];
+        cell.sum += seen->metres;
         ++cell.count;
     }
 }
@@ -52,19 +61,18 @@ void lift_bare_parts(const TrackedSkin& skin, const std::vector<std::uint32_t>& 
                      int reach, imaging::DepthImage& out) {
     const Eigen::Isometry3d from_world = place.inverse();
     for (const std::uint32_t v : vertices) {
-        const Vec3d p = from_world * skin.positions[v].cast<double>();
-        const auto pixel = imaging::project(camera, p);
         const Vec3f to_eye = place.translation().cast<float>() - skin.positions[v];
-        if (!pixel || skin.normals[v].dot(to_eye) <= 0.0f) continue;
-        const auto x = static_cast<int>(std::lround(pixel->x()));
-        const auto y = static_cast<int>(std::lround(pixel->y()));
-        if (x < reach || y < reach || x >= seen.width - reach || y >= seen.height - reach) continue;
+        if (skin.normals[v].dot(to_eye) <= 0.0f) continue;
+        const auto pixel =
+            seen_pixel(camera, from_world, skin.positions[v], seen.width, seen.height, reach);
+        if (!pixel) continue;
+        const auto [x, y, tracked_m] = *pixel;
         const auto index = [&](int column, int row) {
             return static_cast<std::size_t>(row) * static_cast<std::size_t>(seen.width) +
                    static_cast<std::size_t>(column);
         };
         const float here = seen.metres[index(x, y)];
-        const float farther = here + static_cast<float>(p.z());
+        const float farther = here - tracked_m;
         if (!(farther > -kNearer_m && farther < kFarther_m)) continue;
         for (int row = y - reach; row <= y + reach; ++row)
             for (int column = x - reach; column <= x + reach; ++column) {

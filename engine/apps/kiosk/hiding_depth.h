@@ -6,6 +6,7 @@
 #include "imaging/image.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,17 @@ struct TrackedSkin {
     std::span<const Vec3f> positions, normals;
     std::span<const body::Part> parts;
 };
+
+/// Pixel that a point of the world falls on, and how far it is along the camera's axis.
+struct SeenPixel {
+    int x = 0, y = 0;
+    float metres = 0.0f;
+};
+/// Nothing when it is behind the camera or within `border` pixels of the picture's edge, or beyond.
+[[nodiscard]] std::optional<SeenPixel> seen_pixel(const imaging::Intrinsics& camera,
+                                                  const Eigen::Isometry3d& from_world,
+                                                  const Vec3f& at, int width, int height,
+                                                  int border = 0);
 
 /// May no cloth cover it, and may it stand before the trunk?
 [[nodiscard]] bool is_arm(body::Part part);

@@ -1,7 +1,6 @@
 #include "apps/kiosk/kiosk.h"
 
 #include "apps/kiosk/room.h"
-#include "core/bytes.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "host/job.h"
@@ -10,7 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <thread>
 #include <unistd.h>
 
@@ -18,7 +16,6 @@ namespace toile::apps::kiosk {
 namespace {
 
 constexpr double kFrame_s = 1.0 / 30.0;
-constexpr double kMetricsEvery_s = 5.0;
 constexpr double kLookEvery_s = 1.0; // at the garments' files
 constexpr double kNoteToShopper_s = 6.0;
 constexpr std::size_t kMostNotes = 3;
@@ -113,7 +110,7 @@ bool Kiosk::frame() {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             now_s_ = before_s; // this was no frame of the mirror
             beat();
-            take_input();
+            take_input(dt_s);
             return true;
         }
     }
@@ -125,7 +122,7 @@ bool Kiosk::frame() {
     }
     take_script();
     fresh_ = fresh_ && feed_.up();
-    take_input();
+    take_input(dt_s);
     fresh_ = fresh_ && feed_.up(); // the operator may have had it opened again
     if (fresh_)
         take_frame(dt_s);
@@ -213,11 +210,11 @@ void Kiosk::give_picture(const pipeline::SensorFrame& pictures, double dt_s) {
     if (seen || screens_.now() == ScreenName::consent || screens_.now() == ScreenName::measure)
         display_->picture().set_camera(pictures, feed_.stream());
     if (!seen) return;
-    std::vector<LitPlace> places;
+    lit_.clear();
     for (const Shopper& shopper : visitors_.all())
         if (shopper.looks[0])
-            display_->picture().add_lit_places(*shopper.looks[0]->person, pictures, places);
-    display_->picture().follow_light(pictures, places, dt_s);
+            display_->picture().add_lit_places(*shopper.looks[0]->person, pictures, lit_);
+    display_->picture().follow_light(pictures, lit_, dt_s);
     if (screens_.now() == ScreenName::setup)
         floor_ = find_camera(pictures.depth, feed_.stream().depth);
 }
@@ -225,6 +222,10 @@ void Kiosk::give_picture(const pipeline::SensorFrame& pictures, double dt_s) {
 void Kiosk::turn_to_measure(double dt_s) {
     const Shopper* shopper = visitors_.first();
     if (shopper == nullptr || !shopper->here) return;
+    if (shopper->id != measured_) { // never two people in one turn
+        measured_ = shopper->id;
+        turn_.begin();
+    }
     const Eigen::Isometry3d eye =
         feed_.stream().world_from_camera.value_or(Eigen::Isometry3d::Identity());
     turn_.see(shopper->frame, eye.translation().cast<float>(), feed_.pictures(), dt_s);
@@ -235,7 +236,7 @@ void Kiosk::turn_to_measure(double dt_s) {
 
 void Kiosk::take_results() {
     if (auto measured = tailor_.take_measured()) {
-        Shopper* shopper = visitors_.first();
+        Shopper* shopper = visitors_.find(measured_);
         const bool usable = measured->error.empty() && shopper != nullptr;
         measuring_ = usable ? Measuring::done : Measuring::failed;
         if (usable) shopper->measurements = measured->body.body->model().measurements;
@@ -303,216 +304,6 @@ void Kiosk::take_changes() {
                     }
         }
     }
-}
-
-void Kiosk::act(Action action, std::uint32_t person) {
-    if (action != Action::invalid) hand_at_s_ = now_s_;
-    Shopper* shopper = person == 0 ? visitors_.first() : visitors_.find(person);
-    if (action == Action::agree && shopper != nullptr) {
-        shopper->agreed = true;
-        if (screens_.now() == ScreenName::mirror) { // a second one, who joins
-            visitors_.order(*shopper, 0, articles_);
-            ++metrics_.visits;
-            return;
-        }
-    }
-    if (action == Action::snapshot && run_.config.snapshots.empty()) return;
-    const ScreenName before = screens_.now();
-    screens_.act(action);
-    if (action == Action::agree && screens_.now() != before) ++metrics_.visits;
-    if (action == Action::decline && screens_.now() != before) ++metrics_.declined;
-    for (const Effect effect : screens_.take_effects())
-        perform(effect, shopper);
-}
-
-void Kiosk::wear() {
-    for (Shopper& shopper : visitors_.all())
-        if (shopper.agreed) visitors_.order(shopper, 0, articles_);
-}
-
-void Kiosk::change(Shopper& shopper, const Choice& choice) {
-    // Side by side it is the second look that changes.
-    const std::size_t look = screens_.comparing() ? 1 : 0;
-    shopper.wanted[look] = choice;
-    visitors_.order(shopper, look, articles_);
-}
-
-void Kiosk::perform(Effect effect, Shopper* shopper) {
-    const std::size_t look = screens_.comparing() ? 1 : 0;
-    const auto wanted = [&] { return shopper->wanted[look]; };
-    switch (effect) {
-    case Effect::begin_measuring:
-        turn_.begin();
-        measuring_ = Measuring::looking;
-        break;
-    case Effect::wear:
-        turn_.erase();
-        wear();
-        break;
-    case Effect::erase:
-        turn_.erase();
-        visitors_.erase();
-        display_->picture().erase();
-        people_.people.clear();
-        people_.shapes.clear();
-        measuring_ = Measuring::not_begun;
-        shopper_note_ = {};
-        frozen_from_.reset();
-        floor_.reset();
-        break;
-    case Effect::freeze:
-        azimuth_deg_ = 0.0f;
-        azimuth_goal_deg_ = 180.0f;
-        frozen_s_ = 0.0;
-        frozen_from_.reset();
-        break;
-    case Effect::turn:
-        azimuth_goal_deg_ += 90.0f;
-        break;
-    case Effect::unfreeze:
-        frozen_from_.reset();
-        break;
-    case Effect::snapshot:
-        snapshot_ = true;
-        break;
-    case Effect::next_garment:
-        if (shopper != nullptr) change(*shopper, step(wanted(), 1, articles_.size()));
-        break;
-    case Effect::previous_garment:
-        if (shopper != nullptr) change(*shopper, step(wanted(), -1, articles_.size()));
-        break;
-    case Effect::next_size:
-        if (shopper != nullptr) change(*shopper, next_size(wanted(), articles_[wanted().article]));
-        break;
-    case Effect::next_colour:
-        if (shopper != nullptr)
-            change(*shopper, next_colour(wanted(), articles_[wanted().article]));
-        break;
-    case Effect::compare:
-        if (shopper == nullptr) break;
-        if (screens_.comparing())
-            change(*shopper, step(shopper->wanted[0], 1, articles_.size()));
-        else
-            shopper->looks[1].reset();
-        break;
-    case Effect::invalid:
-        break;
-    }
-}
-
-void Kiosk::inject(const std::string& fault) {
-    if (fault == "camera") feed_.lose("unplugged by the script", now_s_);
-    if (fault == "picture") rebuild_display("lost by the script");
-    if (fault == "disk") scribe_.fail_next();
-    if (fault == "crash" && run_.restarts == 0) std::abort();
-    if (fault == "stall" && run_.restarts == 0)
-        for (;;)
-            std::this_thread::sleep_for(std::chrono::seconds(1));
-}
-
-void Kiosk::take_script() {
-    for (const ScriptStep& step : run_.script.at(number_)) {
-        if (step.kind == ScriptStep::Kind::act) {
-            const auto& all = visitors_.all();
-            if (step.person == 2 && all.size() < 2) continue;
-            act(step.action, step.person == 2 ? all[1].id : 0);
-        }
-        if (step.kind == ScriptStep::Kind::fault) inject(step.name);
-        if (step.kind == ScriptStep::Kind::quit) quit_ = true;
-    }
-}
-
-void Kiosk::take_input() {
-    const render::WindowInput input = display_->take_input();
-    using Key = render::WindowInput::Key;
-    const std::vector<Button> shown = buttons();
-    for (const Vec2f& tap : input.taps)
-        act(Pointer::tap(tap, shown), 0);
-    for (const auto& press : input.keys) {
-        if (screens_.now() == ScreenName::setup) {
-            setup_key(press);
-            continue;
-        }
-        if (press.key == Key::letter && press.letter == 'o') act(Action::open_setup, 0);
-        if (press.key == Key::left || press.key == Key::up) pointer_.move_focus(-1, shown);
-        if (press.key == Key::right || press.key == Key::down) pointer_.move_focus(1, shown);
-        if (press.key == Key::enter || press.key == Key::space) act(pointer_.press_focus(shown), 0);
-        if (press.key == Key::escape)
-            act(screens_.now() == ScreenName::consent ? Action::decline : Action::finish, 0);
-    }
-    if (!fresh_ || screens_.now() == ScreenName::setup) return;
-    const std::vector<Hand> hands =
-        visitors_.hands([this](const Vec3f& p) { return on_screen(p); });
-    const Action pressed = pointer_.hover(hands, shown, kFrame_s);
-    if (pressed != Action::invalid) act(pressed, pointer_.person());
-}
-
-void Kiosk::setup_key(const render::WindowInput::Press& press) {
-    using Key = render::WindowInput::Key;
-    MirrorSettings& mirror = run_.config.mirror;
-    constexpr double kStep = 0.01;
-    const auto clamped = [](double v) { return std::clamp(v, -0.5, 0.5); };
-    if (press.key == Key::left) mirror.offset_x = clamped(mirror.offset_x - kStep);
-    if (press.key == Key::right) mirror.offset_x = clamped(mirror.offset_x + kStep);
-    if (press.key == Key::up) mirror.offset_y = clamped(mirror.offset_y - kStep);
-    if (press.key == Key::down) mirror.offset_y = clamped(mirror.offset_y + kStep);
-    if (press.letter == '1') mirror.scale = std::max(1.0, mirror.scale - 0.02);
-    if (press.letter == '2') mirror.scale = std::min(4.0, mirror.scale + 0.02);
-    if (press.letter == 'f' && floor_) {
-        run_.config.camera = *floor_;
-        feed_.set_camera(*floor_);
-    }
-    if (press.letter == 's' && !run_.config_file.empty()) {
-        try {
-            save_setup(run_.config_file, mirror, run_.config.camera);
-            notes_.push_back({texts_[Text::setup_saved], now_s_ + run_.config.operator_line_s});
-        } catch (const std::exception& e) {
-            note_fault(Fault::disk, texts_.with(Text::disk_full, {{"why", e.what()}}));
-        }
-    }
-    if (press.letter == 'q') quit_ = true;
-    if (press.key == Key::escape || press.key == Key::enter) act(Action::close_setup, 0);
-}
-
-void Kiosk::write_metrics(bool now) {
-    if (run_.config.metrics.empty() || (!now && now_s_ < metrics_at_s_)) return;
-    metrics_at_s_ = now_s_ + kMetricsEvery_s;
-    metrics_.screen = screens_.now();
-    metrics_.camera_up = feed_.up();
-    metrics_.frame_p95_s = 1e-3 * frame_time_.quantiles().p95_ms;
-    metrics_.latency_p95_s = 1e-3 * picture_latency_.quantiles().p95_ms;
-    scribe_.write(run_.config.metrics, prometheus_text(metrics_));
-}
-
-void Kiosk::write_report() {
-    if (run_.report.empty()) return;
-    nlohmann::ordered_json json;
-    const auto put = [&](const char* name, const pipeline::DurationHistogram& histogram) {
-        const pipeline::Quantiles q = histogram.quantiles();
-        json[name] = {{"median_ms", q.median_ms}, {"p95_ms", q.p95_ms}, {"max_ms", q.max_ms}};
-    };
-    json["frames"] = metrics_.frames;
-    json["camera_frames"] = camera_frames_;
-    json["dropped"] = metrics_.dropped;
-    json["garments"] = metrics_.garments;
-    json["seconds"] = last_frame_s_ - first_frame_s_;
-    json["longest_gap_s"] = longest_gap_s_;
-    put("frame_wall", frame_time_);
-    put("compute_wall", compute_time_);
-    put("source_wall", source_time_);
-    put("drawing_wall", draw_time_);
-    if (live_) put("latency_garment_state", state_latency_);
-    if (live_) put("latency_picture", picture_latency_);
-    for (std::size_t i = 0; i < pipeline::kStageCount; ++i) {
-        const auto stage = static_cast<pipeline::Stage>(i);
-        const pipeline::Quantiles q = clock_.stage(stage);
-        json["stages"][std::string(pipeline::stage_name(stage))] = {
-            {"median_ms", q.median_ms}, {"p95_ms", q.p95_ms}, {"max_ms", q.max_ms}};
-    }
-    json["picture_scale"] = scale_.now();
-    for (std::size_t i = 1; i < kFaultCount; ++i)
-        json["faults"][fault_name(static_cast<Fault>(i))] = metrics_.faults[i];
-    write_text(run_.report, json.dump(2) + "\n");
 }
 
 } // namespace toile::apps::kiosk

@@ -56,25 +56,29 @@ class Kiosk {
 
     // kiosk.cpp: the loop
     bool frame();
-    void take_input();
-    void take_script();
-    void inject(const std::string& fault);
     void take_frame(double dt_s);
     void give_picture(const pipeline::SensorFrame& pictures, double dt_s);
     void take_results();
     void take_changes();
+    void wear_on(Shopper& shopper, DressResult result);
+    void turn_to_measure(double dt_s);
+    void note_fault(Fault fault, std::string words);
+    void pace(double began_s) const;
+    void beat() const;
+
+    // kiosk_acts.cpp: what taps, keys, hands and scripts do
+    void take_input(double dt_s);
+    void take_script();
+    void inject(const std::string& fault);
     void act(Action action, std::uint32_t person);
     void perform(Effect effect, Shopper* shopper);
     void change(Shopper& shopper, const Choice& choice);
     void wear();
-    void wear_on(Shopper& shopper, DressResult result);
-    void turn_to_measure(double dt_s);
-    void note_fault(Fault fault, std::string words);
     void setup_key(const render::WindowInput::Press& press);
+
+    // kiosk_figures.cpp
     void write_metrics(bool now);
     void write_report();
-    void pace(double began_s) const;
-    void beat() const;
 
     // kiosk_view.cpp: what is shown
     void draw();
@@ -117,6 +121,8 @@ class Kiosk {
     std::uint32_t last_sequence_ = 0;
     std::optional<double> clock_offset_s_; ///< wall minus capture time
     Measuring measuring_ = Measuring::not_begun;
+    std::uint32_t measured_ = 0; ///< whose turn it is, or was
+    std::vector<LitPlace> lit_;  ///< scratch
     bool fresh_ = false;
     bool quit_ = false;
     std::optional<Reach> reach_;

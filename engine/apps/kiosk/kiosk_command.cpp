@@ -152,6 +152,7 @@ void add_kiosk_commands(CLI::App& app, const GlobalOptions& global) {
     command->add_flag("--no-watchdog", options->no_watchdog, "One process, not started again");
     // Between the watchdog and the mirror.
     command->add_option("--spoil", options->spoil, "Draws the camera's view wrongly on purpose")
+        ->check(CLI::IsMember({"shift", "shadows", "occlusion"}))
         ->type_name("shift|shadows|occlusion")
         ->group("For tests of pictures");
     command->add_flag("--safe", options->safe)->group("");

@@ -124,15 +124,11 @@ void LivePicture::add_lit_places(const pipeline::DressedPerson& person,
     for (std::size_t v = 0; v < posed.positions.size(); v += kEveryVertex) {
         const Vec3f& normal = posed.normals[v];
         if (normal.dot((eye - posed.positions[v]).normalized()) < 0.25f) continue;
-        const Vec3d p = camera_from_world * posed.positions[v].cast<double>();
-        const auto pixel = imaging::project(camera_, p);
-        if (!pixel) continue;
-        const auto x = static_cast<int>(std::lround(pixel->x()));
-        const auto y = static_cast<int>(std::lround(pixel->y()));
-        if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
-        const std::size_t i = static_cast<std::size_t>(y) * width_ + x;
-        if (!(std::abs(frame.depth.metres[i] + static_cast<float>(p.z())) < kSameSurface_m))
-            continue;
+        const auto seen =
+            seen_pixel(camera_, camera_from_world, posed.positions[v], width_, height_);
+        if (!seen) continue;
+        const std::size_t i = static_cast<std::size_t>(seen->y) * width_ + seen->x;
+        if (!(std::abs(frame.depth.metres[i] - seen->metres) < kSameSurface_m)) continue;
         LitPlace place;
         place.normal = normal;
         place.group = v < parts.size() ? static_cast<std::uint8_t>(parts[v]) : 0;
