@@ -12,6 +12,7 @@
 #include "parameters.h"
 #include "plugin.h"
 #include "resizer.h"
+#include "scan_guide.h"
 #include "scanner.h"
 #include "sensor.h"
 #include "skinning.h"

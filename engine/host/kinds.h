@@ -80,6 +80,10 @@ struct KindOf<toile_body_fit> {
     static constexpr const char* id = TOILE_BODY_FIT;
 };
 template <>
+struct KindOf<toile_scan_guide> {
+    static constexpr const char* id = TOILE_SCAN_GUIDE;
+};
+template <>
 struct KindOf<toile_truth> {
     static constexpr const char* id = TOILE_TRUTH;
 };

@@ -42,8 +42,9 @@ std::string Scanning::id_of(const host::Registry& registry, std::string& method)
 
 Scanning::Scanning(host::Registry& registry, host::Services& services, const toile_limits& limits,
                    const std::string& method)
-    : method_(method), instance_(registry.find(TOILE_SCANNER, id_of(registry, method_)), services),
-      limits_(limits) {}
+    : registry_(registry), services_(services), method_(method),
+      instance_(registry.find(TOILE_SCANNER, id_of(registry, method_)), services), limits_(limits) {
+}
 
 void Scanning::set(const std::string& parameter, double value) {
     const auto* table = instance_.find<toile_parameters>();
@@ -77,6 +78,8 @@ void Scanning::begin(std::span<const SensorStream> streams) {
         return instance_.table<toile_scanner>().begin(i, told.data(),
                                                       static_cast<std::uint32_t>(told.size()));
     });
+    guide_.reset();
+    if (instance_.find<toile_scan_guide>() != nullptr) guide_.emplace(streams);
 }
 
 void Scanning::feed(std::span<const SensorFrame> frames) {
@@ -87,13 +90,23 @@ void Scanning::feed(std::span<const SensorFrame> frames) {
         return instance_.table<toile_scanner>().feed(i, given.data(),
                                                      static_cast<std::uint32_t>(given.size()));
     });
+    if (guide_) guide_->keep(frames);
 }
 
 ScannedSurface Scanning::finish(host::Job& job) {
+    nlohmann::ordered_json guided;
+    if (guide_) guided = guide_->give(registry_, services_, limits_, instance_, job);
     host::ScanSink sink(kMostVertices, kMostTriangles);
-    instance_.call("finish", [&](toile_instance* i) {
-        return instance_.table<toile_scanner>().finish(i, sink.handle(), job.handle());
-    });
+    try {
+        instance_.call("finish", [&](toile_instance* i) {
+            return instance_.table<toile_scanner>().finish(i, sink.handle(), job.handle());
+        });
+    } catch (const Error& e) {
+        if (guided.contains("reason"))
+            throw Error(std::string(e.what()) +
+                        "; and no body was found to help: " + guided["reason"].get<std::string>());
+        throw;
+    }
     host::SunkScan taken = sink.take();
     ScannedSurface out;
     geometry::TriangleMesh& mesh = out.surface.mesh;
@@ -109,6 +122,7 @@ ScannedSurface Scanning::finish(host::Job& job) {
         nlohmann::ordered_json::parse(taken.report.empty() ? "{}" : taken.report, nullptr, false);
     if (out.report.is_discarded() || !out.report.is_object())
         throw Error(instance_.id() + ": its report is no JSON object");
+    if (!guided.is_null()) out.report["body"] = std::move(guided);
     return out;
 }
 

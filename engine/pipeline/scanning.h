@@ -6,6 +6,7 @@
 #include "body/body_model.h"
 #include "host/instance.h"
 #include "host/registry.h"
+#include "pipeline/scan_guide.h"
 #include "pipeline/sensor_source.h"
 
 #include <nlohmann/json.hpp>
@@ -46,9 +47,12 @@ class Scanning {
     static std::string id_of(const host::Registry& registry, std::string& method);
     host::Instance& active();
 
+    host::Registry& registry_;
+    host::Services& services_;
     std::string method_;
     host::Instance instance_;
     toile_limits limits_;
+    std::optional<ScanGuide> guide_; ///< for a scanner that wants one
     bool active_ = false;
 };
 

@@ -18,16 +18,15 @@ constexpr float kThrough =
 /// Whether views looked through a place.
 class Emptiness {
   public:
-    Emptiness(std::span<const DepthView> views, std::span<const Pose> poses) : views_(views) {
-        for (const Pose& pose : poses)
-            camera_from_scan_.push_back(pose.inverse().cast<float>());
-    }
+    Emptiness(std::span<const DepthView* const> views, const ViewPlaces& places)
+        : views_(views), places_(places) {}
 
-    [[nodiscard]] bool empty(const Vec3f& place) const {
+    [[nodiscard]] bool empty(const Vec3f& place, std::vector<Warp>& space) const {
         std::size_t through = 0, beside = 0, looked = 0;
+        const auto camera_from_scan = places_.at(place, space);
         for (std::size_t i = 0; i < views_.size(); ++i) {
-            const DepthView& view = views_[i];
-            const Vec3f p = camera_from_scan_[i] * place;
+            const DepthView& view = *views_[i];
+            const Vec3f p = warped(camera_from_scan[i], place);
             float u = 0.0f, v = 0.0f;
             if (!view.camera.project(p, u, v) || !in_picture(view, u, v)) continue;
             ++looked;
@@ -53,8 +52,8 @@ class Emptiness {
                u < static_cast<float>(view.camera.width + right) &&
                v < static_cast<float>(view.camera.height + below);
     }
-    std::span<const DepthView> views_;
-    std::vector<Eigen::Isometry3f> camera_from_scan_;
+    std::span<const DepthView* const> views_;
+    const ViewPlaces& places_;
 };
 
 /// The volume's voxels in a box around all blocks; NaN where unknown.
@@ -87,35 +86,65 @@ NodeField known_field(const Volume& volume) {
     return out;
 }
 
-/// Fills unknown nodes by whether they are looked through, and remembers which those were.
-std::vector<std::uint8_t> guess(NodeField& field, const Emptiness& emptiness, float far,
-                                const RowLoop& rows) {
-    std::vector<std::uint8_t> guessed(field.values.size(), 0);
-    const auto layers = static_cast<std::uint32_t>((field.size[2] + kCoarse - 1) / kCoarse);
-    rows(layers, 1, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::int64_t z = kCoarse * static_cast<std::int64_t>(begin);
-             z < std::min<std::int64_t>(kCoarse * static_cast<std::int64_t>(end), field.size[2]);
-             z += kCoarse)
-            for (std::int64_t y = 0; y < field.size[1]; y += kCoarse)
-                for (std::int64_t x = 0; x < field.size[0]; x += kCoarse) {
-                    const Vec3f middle = field.position(field.index(x, y, z)) +
-                                         Vec3f::Constant(0.5f * field.spacing * (kCoarse - 1));
-                    int state = -1;
-                    for (int k = 0; k < kCoarse * kCoarse * kCoarse; ++k) {
-                        const std::int64_t u = x + k % kCoarse, v = y + k / kCoarse % kCoarse,
-                                           w = z + k / (kCoarse * kCoarse);
-                        if (u >= field.size[0] || v >= field.size[1] || w >= field.size[2])
-                            continue;
-                        const auto i = static_cast<std::size_t>(field.index(u, v, w));
-                        if (!std::isnan(field.values[i])) continue;
-                        if (state < 0) state = emptiness.empty(middle) ? 1 : 0;
-                        field.values[i] = state == 1 ? far : -far;
-                        guessed[i] = 1;
-                    }
-                }
-    });
-    return guessed;
-}
+/// Fills unknown nodes, and remembers which those were.
+class Guess {
+  public:
+    Guess(NodeField& field, const Emptiness& emptiness, const geometry::NearestSurface* likely,
+          float far)
+        : field_(field), emptiness_(emptiness), likely_(likely), far_(far),
+          guessed_(field.values.size(), 0) {}
+
+    std::vector<std::uint8_t> all(const RowLoop& rows) {
+        const auto layers = static_cast<std::uint32_t>((field_.size[2] + kCoarse - 1) / kCoarse);
+        rows(layers, 1, [&](std::uint32_t begin, std::uint32_t end) {
+            std::vector<Warp> space;
+            for (std::int64_t z = kCoarse * static_cast<std::int64_t>(begin);
+                 z <
+                 std::min<std::int64_t>(kCoarse * static_cast<std::int64_t>(end), field_.size[2]);
+                 z += kCoarse)
+                for (std::int64_t y = 0; y < field_.size[1]; y += kCoarse)
+                    for (std::int64_t x = 0; x < field_.size[0]; x += kCoarse)
+                        cell(x, y, z, space);
+        });
+        return std::move(guessed_);
+    }
+
+  private:
+    /// Nodes that are looked through as one.
+    void cell(std::int64_t x, std::int64_t y, std::int64_t z, std::vector<Warp>& space) {
+        const Vec3f middle = field_.position(field_.index(x, y, z)) +
+                             Vec3f::Constant(0.5f * field_.spacing * (kCoarse - 1));
+        float value = 0.0f;
+        bool told = false;
+        for (int k = 0; k < kCoarse * kCoarse * kCoarse; ++k) {
+            const std::int64_t u = x + k % kCoarse, v = y + k / kCoarse % kCoarse,
+                               w = z + k / (kCoarse * kCoarse);
+            if (u >= field_.size[0] || v >= field_.size[1] || w >= field_.size[2]) continue;
+            const auto i = static_cast<std::size_t>(field_.index(u, v, w));
+            if (!std::isnan(field_.values[i])) continue;
+            if (!told) value = of(middle, space);
+            told = true;
+            // Near the likely surface each node for itself.
+            const bool near = likely_ != nullptr && std::abs(value) < far_;
+            field_.values[i] = near ? likely(field_.position(static_cast<std::int64_t>(i))) : value;
+            guessed_[i] = 1;
+        }
+    }
+    [[nodiscard]] float of(const Vec3f& place, std::vector<Warp>& space) const {
+        if (emptiness_.empty(place, space)) return far_;
+        return likely_ != nullptr ? likely(place) : -far_;
+    }
+    [[nodiscard]] float likely(const Vec3f& place) const {
+        const auto near = likely_->nearest(place);
+        return std::clamp(near.signed_distance, -far_, far_);
+    }
+
+    NodeField& field_;
+    const Emptiness& emptiness_;
+    const geometry::NearestSurface* likely_;
+    float far_;
+    std::vector<std::uint8_t> guessed_;
+};
 
 /// The outermost nodes are outside, so that every surface is closed.
 void close_box(NodeField& field, float far) {
@@ -190,12 +219,18 @@ void stand_on(NodeField& field, const std::vector<std::uint8_t>& guessed,
 
 } // namespace
 
-ClosedSurface closed_surface(const Volume& volume, std::span<const DepthView> views,
-                             std::span<const Pose> poses,
-                             const std::optional<geometry::Plane>& floor, const RowLoop& rows) {
+RigidPlaces::RigidPlaces(std::span<const Pose> scan_from_camera) {
+    for (const Pose& pose : scan_from_camera)
+        camera_from_scan_.emplace_back(pose.inverse().matrix().topRows<3>().cast<float>());
+}
+
+ClosedSurface closed_surface(const Volume& volume, std::span<const DepthView* const> views,
+                             const ViewPlaces& places, const std::optional<geometry::Plane>& floor,
+                             const geometry::NearestSurface* likely, const RowLoop& rows) {
     NodeField field = known_field(volume);
     const float far = volume.options().truncation_m;
-    const auto guessed = guess(field, Emptiness(views, poses), far, rows);
+    const Emptiness emptiness(views, places);
+    const auto guessed = Guess(field, emptiness, likely, far).all(rows);
     close_box(field, far);
     diffuse(field, guessed, rows);
     if (floor) stand_on(field, guessed, *floor);
@@ -240,19 +275,19 @@ void smooth(geometry::TriangleMesh& mesh) {
 namespace {
 
 /// Sum of colours of one vertex over the views; w: weight.
-Vec4f seen_color(const Vec3f& place, const Vec3f& normal, std::span<const DepthView> views,
-                 std::span<const Eigen::Isometry3f> camera_from_scan) {
+Vec4f seen_color(const Vec3f& place, const Vec3f& normal, std::span<const DepthView* const> views,
+                 std::span<const Warp> camera_from_scan) {
     constexpr float kSame_m = 0.015f;
     Vec4f sum = Vec4f::Zero();
     for (std::size_t i = 0; i < views.size(); ++i) {
-        const DepthView& view = views[i];
+        const DepthView& view = *views[i];
         if (view.colors.empty()) continue;
-        const Vec3f p = camera_from_scan[i] * place;
+        const Vec3f p = warped(camera_from_scan[i], place);
         int x = 0, y = 0;
         if (!view.camera.pixel(p, x, y)) continue;
         const std::size_t at = view.camera.at(x, y);
         if (view.depth[at] == 0.0f || std::abs(view.depth[at] + p.z()) > kSame_m) continue;
-        const float cosine = (camera_from_scan[i].linear() * normal).dot(-p.normalized());
+        const float cosine = (camera_from_scan[i].leftCols<3>() * normal).dot(-p.normalized());
         if (cosine < 0.2f) continue;
         const float weight = cosine * cosine * cosine * cosine;
         const Rgba8& color = view.colors[at];
@@ -289,18 +324,17 @@ void spread(std::vector<Vec4f>& colors, const geometry::TriangleMesh& mesh) {
 } // namespace
 
 std::vector<Rgba8> vertex_colors(const geometry::TriangleMesh& mesh,
-                                 std::span<const DepthView> views, std::span<const Pose> poses,
+                                 std::span<const DepthView* const> views, const ViewPlaces& places,
                                  const RowLoop& rows) {
-    if (std::all_of(views.begin(), views.end(), [](const auto& v) { return v.colors.empty(); }))
+    if (std::all_of(views.begin(), views.end(), [](const auto* v) { return v->colors.empty(); }))
         return {};
-    std::vector<Eigen::Isometry3f> camera_from_scan;
-    for (const Pose& pose : poses)
-        camera_from_scan.push_back(pose.inverse().cast<float>());
     std::vector<Vec4f> sums(mesh.positions.size(), Vec4f::Zero());
     rows(static_cast<std::uint32_t>(sums.size()), 2048,
          [&](std::uint32_t begin, std::uint32_t end) {
+             std::vector<Warp> space;
              for (std::uint32_t v = begin; v < end; ++v) {
-                 sums[v] = seen_color(mesh.positions[v], mesh.normals[v], views, camera_from_scan);
+                 sums[v] = seen_color(mesh.positions[v], mesh.normals[v], views,
+                                      places.at(mesh.positions[v], space));
                  if (sums[v].w() > 0.0f) sums[v] /= sums[v].w();
              }
          });

@@ -237,6 +237,25 @@ void RigidFusion::take_off_bias() {
     }
 }
 
+void RigidFusion::settle() {
+    if (settled_) return;
+    settled_ = true;
+    model_.reset();
+    report_.frames = views_.size();
+    close_loop();
+    if (report_.loop_closed || !options_.refine_jointly) return;
+    const auto pairs = overlapping_pairs(poses_, options_.pair_angle, options_.pairs);
+    report_.joint_rms_m = register_jointly(views_, pairs, {}, poses_, rows_);
+}
+
+std::map<std::uint32_t, Pose> RigidFusion::settled() {
+    if (views_.size() > 1) settle();
+    std::map<std::uint32_t, Pose> out;
+    for (std::size_t i = 0; i < poses_.size(); ++i)
+        out[numbers_[i]] = first_.inverse() * poses_[i];
+    return out;
+}
+
 FusedSurface RigidFusion::finish(const std::optional<geometry::Plane>& floor,
                                  const std::function<void(double)>& progress) {
     if (fed_ == 0) throw Error("no frame shows anything to scan");
@@ -247,14 +266,8 @@ FusedSurface RigidFusion::finish(const std::optional<geometry::Plane>& floor,
     if (views_.size() < 2)
         throw Error("a single view shows one side only: move the camera around what is to be "
                     "scanned, or turn that slowly");
-    model_.reset();
-    report_.frames = views_.size();
-    close_loop();
+    settle();
     progress(0.5);
-    if (!report_.loop_closed && options_.refine_jointly) {
-        const auto pairs = overlapping_pairs(poses_, options_.pair_angle, options_.pairs);
-        report_.joint_rms_m = register_jointly(views_, pairs, {}, poses_, rows_);
-    }
     take_off_bias();
     progress(0.7);
     const Volume volume = fused(all(), options_.voxel_m, options_.truncation_m);
@@ -266,11 +279,15 @@ FusedSurface RigidFusion::finish(const std::optional<geometry::Plane>& floor,
         ground = geometry::Plane::through(move * Vec3f(floor->offset * floor->normal),
                                           move.linear() * floor->normal);
     }
-    ClosedSurface closed = closed_surface(volume, views_, poses_, ground, rows_);
+    std::vector<const DepthView*> views;
+    for (const DepthView& view : views_)
+        views.push_back(&view);
+    const RigidPlaces places(poses_);
+    ClosedSurface closed = closed_surface(volume, views, places, ground, nullptr, rows_);
     for (int round = 0; round < options_.smoothing_rounds; ++round)
         smooth(closed.mesh);
     FusedSurface out;
-    out.colors = vertex_colors(closed.mesh, views_, poses_, rows_);
+    out.colors = vertex_colors(closed.mesh, views, places, rows_);
     out.mesh = std::move(closed.mesh);
     const Eigen::Isometry3f move = out_of_scan.cast<float>();
     for (Vec3f& p : out.mesh.positions)

@@ -7,6 +7,7 @@
 #include "scan/registration.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 
 namespace toile::scan {
@@ -57,6 +58,10 @@ class RigidFusion {
     void add_at(DepthView view, const Pose& first_from_camera);
     [[nodiscard]] std::size_t count() const { return views_.size(); }
 
+    /// The loop closed and all views placed at once: by their numbers, the first camera from each.
+    /// Nothing may be added after; `finish` goes on from there.
+    [[nodiscard]] std::map<std::uint32_t, Pose> settled();
+
     /// `progress(share)` may throw to stop. `floor`: in the first camera's coordinates.
     /// \throw Error when nothing was seen, or but one view
     [[nodiscard]] FusedSurface finish(const std::optional<geometry::Plane>& floor,
@@ -67,6 +72,7 @@ class RigidFusion {
     void keep(DepthView view, const Pose& pose, std::uint32_t number);
     [[nodiscard]] Registered tracked(const DepthView& view) const;
     void close_loop();
+    void settle();
     [[nodiscard]] double surface_rms(const Volume& volume) const;
     void take_off_bias();
     [[nodiscard]] Volume fused(std::span<const std::size_t> which, float voxel,
@@ -82,6 +88,7 @@ class RigidFusion {
     Pose first_ = Pose::Identity(); ///< scan from the first camera
     std::unique_ptr<Volume> model_; ///< of the tracking, coarse
     std::uint32_t fed_ = 0;
+    bool settled_ = false;
     FusionReport report_;
 };
 

@@ -43,16 +43,21 @@ void Volume::allocate(const DepthView& view, const Pose& pose) {
                 const int bx = floor_int(p.x()), by = floor_int(p.y()), bz = floor_int(p.z());
                 if (bx < 0 || by < 0 || bz < 0 || bx >= side_ || by >= side_ || bz >= side_)
                     continue;
-                std::int32_t& slot =
-                    index_[static_cast<std::size_t>((bz * side_ + by) * side_ + bx)];
-                if (slot >= 0) continue;
-                slot = static_cast<std::int32_t>(blocks_.size());
-                blocks_.emplace_back();
-                blocks_.back().distance.fill(0.0f);
-                blocks_.back().weight.fill(0.0f);
-                places_.emplace_back(kSide * bx, kSide * by, kSide * bz);
+                allocate(bx, by, bz);
             }
         }
+}
+
+/// Number of the block at a place in blocks, made when there is none.
+std::int32_t Volume::allocate(int bx, int by, int bz) {
+    std::int32_t& slot = index_[static_cast<std::size_t>((bz * side_ + by) * side_ + bx)];
+    if (slot >= 0) return slot;
+    slot = static_cast<std::int32_t>(blocks_.size());
+    blocks_.emplace_back();
+    blocks_.back().distance.fill(0.0f);
+    blocks_.back().weight.fill(0.0f);
+    places_.emplace_back(kSide * bx, kSide * by, kSide * bz);
+    return slot;
 }
 
 void Volume::update(Block& block, const Eigen::Vector3i& place, const DepthView& view,
@@ -111,6 +116,68 @@ void Volume::integrate(const DepthView& view, const Pose& scan_from_camera, cons
                  update(blocks_[b], places_[b], view, camera_from_scan);
              }
          });
+}
+
+void Volume::add(std::span<const Reading> readings, float radius_m, const RowLoop& rows) {
+    const float truncation = options_.truncation_m;
+    const float reach = std::sqrt(radius_m * radius_m + truncation * truncation);
+    const float scale = 1.0f / (options_.voxel_m * kSide);
+    // Which readings each block gets, in their order.
+    std::vector<std::vector<std::uint32_t>> of_block(blocks_.size());
+    for (std::uint32_t i = 0; i < readings.size(); ++i) {
+        const Vec3f low = scale * (readings[i].point - Vec3f::Constant(reach) - origin_),
+                    high = scale * (readings[i].point + Vec3f::Constant(reach) - origin_);
+        for (int bz = floor_int(low.z()); bz <= floor_int(high.z()); ++bz)
+            for (int by = floor_int(low.y()); by <= floor_int(high.y()); ++by)
+                for (int bx = floor_int(low.x()); bx <= floor_int(high.x()); ++bx) {
+                    if (bx < 0 || by < 0 || bz < 0 || bx >= side_ || by >= side_ || bz >= side_)
+                        continue;
+                    const auto b = static_cast<std::size_t>(allocate(bx, by, bz));
+                    if (b >= of_block.size()) of_block.resize(b + 1);
+                    of_block[b].push_back(i);
+                }
+    }
+    rows(static_cast<std::uint32_t>(of_block.size()), 64,
+         [&](std::uint32_t begin, std::uint32_t end) {
+             for (std::uint32_t b = begin; b < end; ++b)
+                 for (const std::uint32_t i : of_block[b])
+                     splat(blocks_[b], places_[b], readings[i], radius_m);
+         });
+}
+
+void Volume::splat(Block& block, const Eigen::Vector3i& place, const Reading& reading,
+                   float radius) const {
+    const float truncation = options_.truncation_m, voxel = options_.voxel_m;
+    const Vec3f at = (reading.point - origin_) / voxel - place.cast<float>(); // in voxels
+    // The disc's box: along the normal the truncation, across it the radius.
+    Eigen::Vector3i low, high;
+    for (int k = 0; k < 3; ++k) {
+        const float along = std::abs(reading.normal[k]),
+                    half = (truncation * along + radius * std::sqrt(1.0f - along * along)) / voxel;
+        low[k] = std::max(0, static_cast<int>(std::ceil(at[k] - half)));
+        high[k] = std::min(kSide - 1, floor_int(at[k] + half));
+    }
+    const float inverse = 1.0f / (radius * radius);
+    for (int z = low.z(); z <= high.z(); ++z)
+        for (int y = low.y(); y <= high.y(); ++y)
+            for (int x = low.x(); x <= high.x(); ++x) {
+                const Vec3f off = voxel * (Vec3f(static_cast<float>(x), static_cast<float>(y),
+                                                 static_cast<float>(z)) -
+                                           at);
+                const float distance = reading.normal.dot(off);
+                if (distance < -truncation || distance > truncation) continue;
+                const float across = (off.squaredNorm() - distance * distance) * inverse;
+                if (across >= 1.0f) continue;
+                const float fade = distance < 0.0f ? 1.0f + distance / truncation : 1.0f;
+                const float near = 1.0f - across;
+                const float weight = reading.weight * near * near * fade * fade;
+                if (!(weight > 0.0f)) continue;
+                const std::size_t i = within(x, y, z);
+                const float before = block.weight[i];
+                block.weight[i] = before + weight;
+                block.distance[i] =
+                    (before * block.distance[i] + weight * distance) / (before + weight);
+            }
 }
 
 bool Volume::voxel(int x, int y, int z, float& distance, float& weight) const {
@@ -246,17 +313,24 @@ SurfaceMap raycast(const Volume& volume, const DepthView& view, int stride, floa
 
 std::vector<float> predicted_depth(const Volume& volume, const DepthView& view,
                                    const Pose& scan_from_camera) {
+    const Warp pose = scan_from_camera.matrix().topRows<3>().cast<float>();
+    return predicted_depth(volume, view, [&](std::size_t) { return pose; });
+}
+
+std::vector<float> predicted_depth(const Volume& volume, const DepthView& view,
+                                   const std::function<Warp(std::size_t pixel)>& scan_from_camera) {
     const float reach = 1.5f * volume.options().truncation_m;
-    const Eigen::Isometry3f pose = scan_from_camera.cast<float>();
     std::vector<float> out(view.depth.size(), 0.0f);
     for (int y = 0; y < view.camera.height; ++y)
         for (int x = 0; x < view.camera.width; ++x) {
             const std::size_t i = view.camera.at(x, y);
             if (view.raw[i] == 0.0f) continue;
+            const Warp pose = scan_from_camera(i);
+            if (!pose.allFinite()) continue;
             const Vec3f along =
-                pose.linear() * view.camera.ray(static_cast<float>(x), static_cast<float>(y));
-            const float t = crossing(volume, pose.translation(), along, view.raw[i] - reach,
-                                     view.raw[i] + reach);
+                pose.leftCols<3>() * view.camera.ray(static_cast<float>(x), static_cast<float>(y));
+            const float t =
+                crossing(volume, pose.col(3), along, view.raw[i] - reach, view.raw[i] + reach);
             if (t > 0.0f) out[i] = t;
         }
     return out;

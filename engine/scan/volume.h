@@ -5,6 +5,7 @@
 #include "core/row_loop.h"
 #include "scan/depth_view.h"
 
+#include <functional>
 #include <span>
 
 namespace toile::scan {
@@ -18,6 +19,19 @@ struct VolumeOptions {
     float reach_m = 1.6f; ///< half the side of the cube that may hold the surface
 };
 
+/// A reading that was brought into the scan's coordinates by itself.
+struct Reading {
+    Vec3f point, normal; ///< the normal unit, outwards
+    float weight = 1.0f;
+};
+
+/// A map x -> m.leftCols<3>() x + m.col(3): rigid, or a blend of rigid ones.
+using Warp = Eigen::Matrix<float, 3, 4>;
+
+[[nodiscard]] inline Vec3f warped(const Warp& m, const Vec3f& p) {
+    return m.leftCols<3>() * p + m.col(3);
+}
+
 /// Voxels hold the distance to the surface in metres, positive outside, and how sure it is. Blocks
 /// of 8 x 8 x 8 exist where a surface was seen.
 class Volume {
@@ -26,6 +40,10 @@ class Volume {
 
     /// Adds a view. Distances are those to the tangent plane of a reading, not along the ray.
     void integrate(const DepthView& view, const Pose& scan_from_camera, const RowLoop& rows);
+
+    /// Adds readings of a subject that moves, each as a disc of `radius_m` of its tangent plane.
+    /// Sums are in the order of the readings.
+    void add(std::span<const Reading> readings, float radius_m, const RowLoop& rows);
 
     /// Distance and its slope (unit length) at a point, between voxels. False where not known.
     [[nodiscard]] bool sample(const Vec3f& point, float& distance) const;
@@ -48,8 +66,11 @@ class Volume {
         std::array<float, kSide * kSide * kSide> weight;
     };
     void allocate(const DepthView& view, const Pose& scan_from_camera);
+    std::int32_t allocate(int bx, int by, int bz);
     void update(Block& block, const Eigen::Vector3i& place, const DepthView& view,
                 const Eigen::Isometry3f& camera_from_scan) const;
+    void splat(Block& block, const Eigen::Vector3i& place, const Reading& reading,
+               float radius) const;
     [[nodiscard]] const Block* block_at(int bx, int by, int bz) const {
         if (bx < 0 || by < 0 || bz < 0 || bx >= side_ || by >= side_ || bz >= side_) return nullptr;
         const std::int32_t i = index_[static_cast<std::size_t>((bz * side_ + by) * side_ + bx)];
@@ -78,5 +99,10 @@ struct SurfaceMap {
 /// (pixels) depth of the volume's surface near each of the view's readings, 0 where there is none.
 [[nodiscard]] std::vector<float> predicted_depth(const Volume& volume, const DepthView& view,
                                                  const Pose& scan_from_camera);
+
+/// The same where each reading has a map of its own; one that is not finite has none.
+[[nodiscard]] std::vector<float>
+predicted_depth(const Volume& volume, const DepthView& view,
+                const std::function<Warp(std::size_t pixel)>& scan_from_camera);
 
 } // namespace toile::scan

@@ -8,6 +8,7 @@
 #include "sdk/parameters.h"
 #include "sdk/plugin.h"
 #include "sdk/resizer.h"
+#include "sdk/scan_guide.h"
 #include "sdk/scanner.h"
 #include "sdk/sensor.h"
 #include "sdk/skinning.h"

@@ -7,6 +7,7 @@
 #include "body/skinning.h"
 #include "body/test_person.h"
 #include "core/error.h"
+#include "simulated_sensor/breath.h"
 
 #include <algorithm>
 #include <cmath>
@@ -111,6 +112,7 @@ class AvatarFigure : public Figure {
         skin_.emplace(model_.rest.positions, model_.rest.normals, model_.skin.joints,
                       model_.skin.weights);
         normals_.resize(model_.rest.positions.size());
+        breath_ = Breath(settings.breath_m, model_.rest, model_.parts, model_.skeleton);
 
         const assets::Scene scene = assets::load_scene(model_.folder / (model_.id + ".glb"));
         SurfaceLook look = look_of(scene, scene.materials.empty() ? assets::kNone : 0, Grain::skin);
@@ -151,6 +153,7 @@ class AvatarFigure : public Figure {
         skin_->pose(body::skinning_transforms(model_.skeleton, world),
                     body::SkinningMethod::linear_blend, body::VectorRows(body.positions),
                     body::VectorRows(normals_));
+        breath_.move(time_s, model_.rest.triangles, body.positions);
         if (!hair_) return;
         const auto posed = hair_->pose(body.positions, normals_);
         surfaces_[1].positions.assign(posed.begin(), posed.end());
@@ -160,6 +163,7 @@ class AvatarFigure : public Figure {
     body::Motion motion_;
     std::optional<body::SkinnedSurface> skin_;
     std::vector<Vec3f> normals_;
+    Breath breath_;
     std::optional<HairCap> hair_;
 };
 
@@ -185,6 +189,7 @@ class TestPersonFigure : public Figure {
     explicit TestPersonFigure(const PersonSettings& settings)
         : Figure(settings), person_(body::load_test_person(settings.source)), poser_(person_) {
         motion_ = motion_of(settings, person_.skeleton, nullptr);
+        breath_ = Breath(settings.breath_m, person_.rest, person_.parts, person_.skeleton);
         surfaces_.push_back({{person_.id,
                               person_.rest.triangles,
                               {},
@@ -212,6 +217,7 @@ class TestPersonFigure : public Figure {
         poser_.pose(body::sample(motion_, time_s), place);
         joints_ = poser_.joints();
         surfaces_[0].positions.assign(poser_.positions().begin(), poser_.positions().end());
+        breath_.move(time_s, person_.rest.triangles, surfaces_[0].positions);
         surfaces_[1].positions.assign(poser_.eyes().begin(), poser_.eyes().end());
         if (!hair_) return;
         geometry::vertex_normals(surfaces_[0].positions, person_.rest.triangles, normals_);
@@ -222,6 +228,7 @@ class TestPersonFigure : public Figure {
     body::TestPerson person_;
     body::TestPersonPoser poser_;
     body::Motion motion_;
+    Breath breath_;
     std::vector<Vec3f> normals_;
     std::optional<HairCap> hair_;
 };

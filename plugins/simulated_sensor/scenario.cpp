@@ -187,6 +187,9 @@ PersonSettings read_person(JsonObject& person, const Reader& reader) {
     out.hold_s = person.number_or("hold_s", 0.0, 3600.0, out.hold_s);
     out.change_s = person.number_or("change_s", 0.0, 3600.0, out.change_s);
     out.turntable_s = person.number_or("turntable_s", 0.0, 3600.0, out.turntable_s);
+    out.breath_m = person.number_or("breath_m", 0.0, 0.05, out.breath_m);
+    if (!moves && out.breath_m > 0.0)
+        throw person.error("breath_m", "only an avatar or a test person breathes");
     out.position = point_or(person, "position", out.position);
     out.turn = degrees_or(person, "turn_deg");
     if (person.has("hair")) {

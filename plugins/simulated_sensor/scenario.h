@@ -23,6 +23,7 @@ struct PersonSettings {
     double hold_s = 0.0;                      ///< how long each pose is held
     double change_s = 1.0;                    ///< and how long the way to the next takes
     double turntable_s = 0.0;                 ///< seconds a turn; 0: does not turn
+    double breath_m = 0.0;                    ///< how far the chest rises, every four seconds
     Vec3f position = Vec3f::Zero();           ///< where the person's own x = z = 0 is, metres
     double turn = 0.0;                        ///< about +Y, radians
     std::optional<HairSettings> hair;

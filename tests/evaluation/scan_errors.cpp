@@ -1,10 +1,13 @@
 #include "scan_errors.h"
 
+#include "assets/colored_mesh.h"
 #include "geometry/nearest_surface.h"
 #include "geometry/slice.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
 
 namespace toile::evaluation {
 
@@ -58,6 +61,31 @@ double girth_at(const geometry::TriangleMesh& mesh, float height) {
     for (const auto& loop : geometry::slice(mesh.positions, mesh.triangles, plane))
         if (loop.closed) out = std::max(out, geometry::hull_girth(loop.points, plane));
     return out;
+}
+
+geometry::TriangleMesh load_truth(const std::string& name) {
+    const std::filesystem::path file = name;
+    const bool cache = std::filesystem::is_directory(file);
+    return assets::load_colored_mesh(cache ? file / "surfaces.glb" : file).mesh;
+}
+
+void compare(const geometry::TriangleMesh& scan, const geometry::TriangleMesh& truth,
+             std::span<const float> heights) {
+    const auto print = [](const char* what, const Deviation& d) {
+        std::printf("  %-26s mean %5.2f  95 %% %5.2f  most %6.2f mm\n", what, 1e3 * d.mean_m,
+                    1e3 * d.p95_m, 1e3 * d.most_m);
+    };
+    print("as it stands", deviation(scan.positions, truth));
+    const Eigen::Isometry3d move = best_motion(scan.positions, truth);
+    geometry::TriangleMesh laid = scan;
+    for (Vec3f& p : laid.positions)
+        p = (move * p.cast<double>()).cast<float>();
+    print("laid on the truth", deviation(laid.positions, truth));
+    print("truth to scan", deviation(truth.positions, laid));
+    for (const float h : heights)
+        std::printf("  girth at %.2f m: %6.1f mm, true %6.1f, %+.1f\n", static_cast<double>(h),
+                    1e3 * girth_at(laid, h), 1e3 * girth_at(truth, h),
+                    1e3 * (girth_at(laid, h) - girth_at(truth, h)));
 }
 
 } // namespace toile::evaluation

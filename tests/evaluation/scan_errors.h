@@ -4,6 +4,7 @@
 #include "geometry/mesh.h"
 
 #include <span>
+#include <string>
 
 namespace toile::evaluation {
 
@@ -21,5 +22,12 @@ struct Deviation {
 
 /// Convex girth of the largest closed curve at a height, metres; 0: none.
 [[nodiscard]] double girth_at(const geometry::TriangleMesh& mesh, float height);
+
+/// A mesh file, or the first frame of a recording's truth (a surface cache's folder). \throw Error
+[[nodiscard]] geometry::TriangleMesh load_truth(const std::string& name);
+
+/// Prints distances, as the scan stands and laid on the truth, both ways, and girths at heights.
+void compare(const geometry::TriangleMesh& scan, const geometry::TriangleMesh& truth,
+             std::span<const float> heights);
 
 } // namespace toile::evaluation

@@ -2,7 +2,6 @@
 // Options: the filter's and the fusion's switches (see `set`), heights=a,b,c for girths (metres),
 // out=FILE.ply. Shares of time on stderr.
 #include "assets/colored_mesh.h"
-#include "assets/files.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "imaging/capture_folder.h"
@@ -106,33 +105,6 @@ class Clock {
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-void print(const char* what, const evaluation::Deviation& d) {
-    std::printf("  %-26s mean %5.2f  95 %% %5.2f  most %6.2f mm\n", what, 1e3 * d.mean_m,
-                1e3 * d.p95_m, 1e3 * d.most_m);
-}
-
-/// A mesh file, or the first frame of a recording's surface cache.
-geometry::TriangleMesh load_truth(const std::string& name) {
-    const std::filesystem::path file = name;
-    const bool cache = std::filesystem::is_directory(file);
-    return assets::load_colored_mesh(cache ? file / "surfaces.glb" : file).mesh;
-}
-
-void compare(const geometry::TriangleMesh& scan, const geometry::TriangleMesh& truth,
-             const Settings& s) {
-    print("as it stands", evaluation::deviation(scan.positions, truth));
-    const Eigen::Isometry3d move = evaluation::best_motion(scan.positions, truth);
-    geometry::TriangleMesh laid = scan;
-    for (Vec3f& p : laid.positions)
-        p = (move * p.cast<double>()).cast<float>();
-    print("laid on the truth", evaluation::deviation(laid.positions, truth));
-    print("truth to scan", evaluation::deviation(truth.positions, laid));
-    for (const float h : s.heights)
-        std::printf("  girth at %.2f m: %6.1f mm, true %6.1f, %+.1f\n", static_cast<double>(h),
-                    1e3 * evaluation::girth_at(laid, h), 1e3 * evaluation::girth_at(truth, h),
-                    1e3 * (evaluation::girth_at(laid, h) - evaluation::girth_at(truth, h)));
-}
-
 void run(const std::string& folder, const std::string& truth_file, const Settings& s) {
     Clock clock;
     const imaging::CaptureCamera capture = imaging::open_capture(folder).cameras.at(0);
@@ -184,7 +156,7 @@ void run(const std::string& folder, const std::string& truth_file, const Setting
         assets::ColoredMesh mesh{fused.mesh, fused.colors};
         assets::save_scene(assets::scene_of(mesh, "scan"), s.out);
     }
-    compare(fused.mesh, load_truth(truth_file), s);
+    evaluation::compare(fused.mesh, evaluation::load_truth(truth_file), s.heights);
     clock.lap("compare");
 }
 
