@@ -120,6 +120,82 @@ TEST_F(ScanTest, ARiggedScanMovesWithoutTearing) {
     }
 }
 
+/// Distances of a scan's vertices from the true surface of the first frame: mean and 95 %.
+std::pair<double, double> off_the_truth(const fs::path& scan, const fs::path& recording) {
+    const auto scanned = assets::load_colored_mesh(scan).mesh;
+    const auto truth = assets::load_colored_mesh(recording / "truth" / "surfaces.glb").mesh;
+    const geometry::NearestSurface surface(truth.positions, truth.triangles);
+    std::vector<float> off;
+    double mean = 0.0;
+    for (const Vec3f& p : scanned.positions) {
+        off.push_back(surface.nearest(p).distance);
+        mean += static_cast<double>(off.back()) / static_cast<double>(scanned.positions.size());
+    }
+    std::sort(off.begin(), off.end());
+    return {mean, off[off.size() * 95 / 100]};
+}
+
+/// Arms that go up and down by some 25 degrees while the trunk sways.
+constexpr const char* kRestless = R"({"schema": 1, "name": "restless", "legs": "follow", "keys": [
+    {"time_s": 0, "rotations_deg": {"leftUpperArm": [0, 0, -45], "rightUpperArm": [0, 0, 45]}},
+    {"time_s": 4, "hips_offset_m": [0.015, 0, 0.01], "rotations_deg": {"spine": [2, 2, 2],
+        "leftUpperArm": [0, 8, -60], "rightUpperArm": [0, -8, 50], "head": [0, 10, 0]}},
+    {"time_s": 8, "hips_offset_m": [-0.015, 0, 0], "rotations_deg": {"spine": [-2, 0, -2],
+        "leftUpperArm": [0, 0, -35], "rightUpperArm": [0, 10, 65]}},
+    {"time_s": 12, "hips_offset_m": [0.01, 0, -0.01], "rotations_deg": {"spine": [0, 3, 1],
+        "leftUpperArm": [0, -8, -55], "rightUpperArm": [0, 0, 40], "head": [0, -10, 0]}},
+    {"time_s": 16, "rotations_deg": {"leftUpperArm": [0, 0, -45], "rightUpperArm": [0, 0, 45]}}]})";
+
+constexpr const char* kCameras = R"("scene": {"walls": [{"position": [0, 0, -1.5]}]},
+    "cameras": [{"name": "front", "mount": "upright", "position": [0, 1.1, 2.1], "look_at": [0, 0.88, 0]}]})";
+
+TEST(MovingScanTest, AWomanWhoSwaysAndMovesTheArmsWhileTurningComesOutAsSheStoodFirst) {
+    const TemporaryFolder folder;
+    write_text(folder / "restless.json", kRestless);
+    write_text(folder / "turn.json",
+               std::string(R"({"schema": 1, "frames": 33, "frames_per_second": 2,
+        "people": [{"body": {"avatar": "woman"}, "turntable_s": 16, "motion": "restless.json",
+                    "breath_m": 0.006}],)") +
+                   kCameras);
+    ASSERT_EQ(run_toile({"record", "--source", "simulated:" + (folder / "turn.json").string(),
+                         "--out", (folder / "turn").string()})
+                  .status,
+              0);
+    const auto done = run_toile({"scan", "--source", "capture:" + (folder / "turn").string(),
+                                 "--method", "turntable", "--out", (folder / "scan.ply").string(),
+                                 "--report", (folder / "scan.json").string()});
+    ASSERT_EQ(done.status, 0) << done.output;
+    const auto report = parse_json_file(folder / "scan.json");
+    EXPECT_EQ(report.at("template"), "body");
+    EXPECT_EQ(report.at("frames_lost"), 0);
+    const auto [mean, most] = off_the_truth(folder / "scan.ply", folder / "turn");
+    EXPECT_LT(mean, 0.005);
+    EXPECT_LT(most, 0.015);
+}
+
+TEST(MovingScanTest, ArmsMovedFreelyComeOutInOnePoseAndEachIterationHelps) {
+    const TemporaryFolder folder;
+    write_text(folder / "restless.json", kRestless);
+    write_text(folder / "free.json",
+               std::string(R"({"schema": 1, "frames": 17, "frames_per_second": 2,
+        "people": [{"body": {"avatar": "woman"}, "motion": "restless.json"}],)") +
+                   kCameras);
+    ASSERT_EQ(run_toile({"record", "--source", "simulated:" + (folder / "free.json").string(),
+                         "--out", (folder / "free").string()})
+                  .status,
+              0);
+    const auto done = run_toile({"scan", "--source", "capture:" + (folder / "free").string(),
+                                 "--method", "articulated", "--out", (folder / "scan.ply").string(),
+                                 "--report", (folder / "scan.json").string()});
+    ASSERT_EQ(done.status, 0) << done.output;
+    const auto residuals =
+        parse_json_file(folder / "scan.json").at("residuals_m").get<std::vector<double>>();
+    ASSERT_GE(residuals.size(), 2u);
+    for (std::size_t k = 1; k < residuals.size(); ++k)
+        EXPECT_LE(residuals[k], residuals[k - 1]);
+    EXPECT_LT(off_the_truth(folder / "scan.ply", folder / "free").first, 0.010);
+}
+
 TEST_F(ScanTest, RefusesWhatCannotBeDone) {
     const auto refused = [&](std::vector<std::string> words, int status, const char* text) {
         const auto result = scan(std::move(words));
