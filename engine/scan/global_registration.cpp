@@ -85,7 +85,7 @@ Registered register_clouds(std::span<const Vec3f> a, std::span<const Vec3f> b, c
         double square = 0.0;
         for (const Vec3f& p : b) {
             const Vec3f here = (out.pose * p.cast<double>()).cast<float>();
-            const Vec3f& near = a[tree.nearest(here)];
+            const Vec3f& near = a[tree.nearest(here).index];
             to.push_back(near.cast<double>());
             from.push_back(p.cast<double>());
             square += (near - here).cast<double>().squaredNorm();
