@@ -51,9 +51,8 @@ Eigen::Isometry3d upright(const pipeline::SensorStream& stream, const imaging::D
     const auto thin = geometry::thinned_out(seen, kEnough);
     const auto floor = geometry::find_floor(thin, Vec3f::UnitY(), kMostTilt);
     if (!floor) return out;
-    out.linear() =
-        Eigen::Quaterniond::FromTwoVectors(floor->normal.cast<double>(), Vec3d::UnitY())
-            .toRotationMatrix();
+    out.linear() = Eigen::Quaterniond::FromTwoVectors(floor->normal.cast<double>(), Vec3d::UnitY())
+                       .toRotationMatrix();
     out.translation().y() = -floor->offset;
     return out;
 }
@@ -71,8 +70,7 @@ imaging::RigFile ball_rig(CameraSet& cameras, const RigRequest& request) {
     while ((request.frames == 0 || count < request.frames) && !host::interrupt_flag() &&
            cameras.next(instant)) {
         for (std::size_t c = 0; c < streams.size(); ++c)
-            seen[c].push_back(
-                scan::find_ball(streams[c].depth, instant[c].depth.metres, options));
+            seen[c].push_back(scan::find_ball(streams[c].depth, instant[c].depth.metres, options));
         if (count++ == 0) first = instant;
         show(count);
     }
@@ -86,9 +84,8 @@ imaging::RigFile ball_rig(CameraSet& cameras, const RigRequest& request) {
     out.report = {{"frames", count}, {"radius_m", found.radius_m}};
     for (std::size_t c = 0; c < streams.size(); ++c) {
         out.cameras.push_back({names[c], world * found.rig.first_from_camera[c]});
-        out.report["cameras"].push_back({{"name", names[c]},
-                                         {"places", found.rig.places[c]},
-                                         {"rms_m", found.rig.rms_m[c]}});
+        out.report["cameras"].push_back(
+            {{"name", names[c]}, {"places", found.rig.places[c]}, {"rms_m", found.rig.rms_m[c]}});
     }
     return out;
 }
@@ -142,9 +139,8 @@ std::vector<scan::Pose> places_from_body(std::vector<pipeline::SensorStream> str
 }
 
 /// The surfaces that all cameras see, laid on each other.
-imaging::RigFile person_rig(CameraSet& cameras, const RigRequest& request,
-                            host::Registry& registry, host::Services& services,
-                            const toile_limits& limits) {
+imaging::RigFile person_rig(CameraSet& cameras, const RigRequest& request, host::Registry& registry,
+                            host::Services& services, const toile_limits& limits) {
     const auto& streams = cameras.streams();
     const std::vector<Instant> instants = all_instants(cameras, request.frames);
     const auto places = places_from_body(streams, instants, registry, services, limits);
@@ -154,8 +150,7 @@ imaging::RigFile person_rig(CameraSet& cameras, const RigRequest& request,
         std::vector<scan::CameraView> views;
         for (std::uint32_t c = 0; c < streams.size(); ++c) {
             const scan::Picture picture{streams[c].depth, instant[c].depth.metres, {}};
-            const Vec3f up =
-                (places[c].linear().transpose() * Vec3d::UnitY()).cast<float>();
+            const Vec3f up = (places[c].linear().transpose() * Vec3d::UnitY()).cast<float>();
             const scan::Subject subject = scan::find_subject(picture, up);
             if (subject.trouble.empty())
                 views.push_back({c, scan::filtered_view(picture, subject.mask, {}, rows)});
@@ -185,9 +180,8 @@ imaging::RigFile calibrate_rig(CameraSet& cameras, const RigRequest& request,
                                const toile_limits& limits) {
     if (cameras.streams().size() < 2)
         throw UsageError("scan --calibrate: a single camera needs none; name more with --source");
-    return request.method == "ball"
-               ? ball_rig(cameras, request)
-               : person_rig(cameras, request, registry, services, limits);
+    return request.method == "ball" ? ball_rig(cameras, request)
+                                    : person_rig(cameras, request, registry, services, limits);
 }
 
 } // namespace toile::apps

@@ -9,8 +9,8 @@
 namespace toile::apps {
 
 struct RigRequest {
-    std::string method;      ///< "ball" or "person"
-    double radius_m = 0.0;   ///< of the ball; 0: found out
+    std::string method;       ///< "ball" or "person"
+    double radius_m = 0.0;    ///< of the ball; 0: found out
     std::uint32_t frames = 0; ///< at most so many of each camera; 0: all
 };
 

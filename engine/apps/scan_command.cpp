@@ -130,8 +130,9 @@ void add_scan_commands(CLI::App& app, const GlobalOptions& global) {
                      "Instead of a surface, find out where the cameras stand to each other: from "
                      "a ball that is moved about, or from a person whom all see")
         ->check(CLI::IsMember({"ball", "person"}));
-    command->add_option("--ball-radius", options->ball_radius_m,
-                        "Metres, if you know it; else it is found out")
+    command
+        ->add_option("--ball-radius", options->ball_radius_m,
+                     "Metres, if you know it; else it is found out")
         ->check(CLI::Range(0.02, 0.5));
     command
         ->add_option("--extrinsics", options->extrinsics,
@@ -139,11 +140,12 @@ void add_scan_commands(CLI::App& app, const GlobalOptions& global) {
         ->check(CLI::ExistingFile)
         ->type_name("FILE");
     add_scan_output(*command, options->output);
-    command->footer("Example: toile scan --source capture:turn --out anna.ply --triangles 50000 "
-                    "--picture anna.png\n"
-                    "         toile scan --source openni2: --frames 300 --out anna.glb --rig\n"
-                    "         toile scan --source capture:ball --calibrate ball --out rig.json\n"
-                    "         toile scan --source capture:four --extrinsics rig.json --out anna.ply");
+    command->footer(
+        "Example: toile scan --source capture:turn --out anna.ply --triangles 50000 "
+        "--picture anna.png\n"
+        "         toile scan --source openni2: --frames 300 --out anna.glb --rig\n"
+        "         toile scan --source capture:ball --calibrate ball --out rig.json\n"
+        "         toile scan --source capture:four --extrinsics rig.json --out anna.ply");
     command->callback([options, &global] { scan(*options, global); });
 }
 

@@ -153,9 +153,8 @@ void takes_two_cameras_or_refuses(const PluginPtr& plugin) {
     bench.activate();
     const auto& table = bench.table<toile_scanner>();
     const std::array streams = {camera(0.0, 3), camera(std::numbers::pi, 8)};
-    toile_status begun = TOILE_OK;
-    bench.any("begin", [&](auto* i) {
-        return begun = table.begin(i, streams.data(), static_cast<std::uint32_t>(streams.size()));
+    const toile_status begun = bench.any("begin", [&](auto* i) {
+        return table.begin(i, streams.data(), static_cast<std::uint32_t>(streams.size()));
     });
     if (begun == TOILE_E_UNSUPPORTED) return;
     bench.rule(begun >= 0, "begin: refuses two cameras that know where they stand, and not as "

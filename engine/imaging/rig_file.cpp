@@ -26,7 +26,8 @@ RigFile load_rig(const std::filesystem::path& file) {
     RigFile out;
     out.method = root.text("method");
     for (JsonObject& camera : root.objects("cameras")) {
-        out.cameras.push_back({camera.text("name"), read_rigid_motion(camera, "world_from_camera")});
+        out.cameras.push_back(
+            {camera.text("name"), read_rigid_motion(camera, "world_from_camera")});
         camera.finish();
     }
     if (root.has("report")) out.report = root.any("report");

@@ -23,7 +23,8 @@ std::vector<std::uint8_t> cores(const imaging::Intrinsics& camera, std::span<con
             bool even = true;
             for (int v = -kCore; v <= kCore && even; ++v)
                 for (int u = -kCore; u <= kCore && even; ++u)
-                    even = std::abs(depth[static_cast<std::size_t>((y + v) * w + x + u)] - z) < jump;
+                    even =
+                        std::abs(depth[static_cast<std::size_t>((y + v) * w + x + u)] - z) < jump;
             out[static_cast<std::size_t>(y * w + x)] = even ? 1 : 0;
         }
     return out;
@@ -168,8 +169,8 @@ std::optional<FoundBall> find_ball(const imaging::Intrinsics& camera, std::span<
             continue;
         // As even as the camera's own noise, and full: its readings fill the disc.
         const double sigma = depth_sigma(static_cast<float>(-ball->centre.z()));
-        const double pixels = std::numbers::pi * 0.81 *
-                              std::pow(camera.fx * ball->radius_m / -ball->centre.z(), 2.0);
+        const double pixels =
+            std::numbers::pi * 0.81 * std::pow(camera.fx * ball->radius_m / -ball->centre.z(), 2.0);
         const double full = static_cast<double>(ball->readings) / pixels;
         if (ball->rms_m > 2.0 * sigma + 0.002 || full < 0.75) continue;
         const double score = full * std::sqrt(pixels) / (1.0 + ball->rms_m / sigma);

@@ -14,9 +14,9 @@ struct BallRig {
     double radius_m = 0.0;
 };
 
-/// One radius for all pictures (`known_radius_m`, or 0: the median of what they tell by themselves),
-/// each ball fitted again with it, then the cameras from its centres. `focal` (cameras): pixels.
-/// \throw Error as solve_rig, or when no picture shows a ball
+/// One radius for all pictures (`known_radius_m`, or 0: the median of what they tell by
+/// themselves), each ball fitted again with it, then the cameras from its centres. `focal`
+/// (cameras): pixels. \throw Error as solve_rig, or when no picture shows a ball
 [[nodiscard]] BallRig rig_from_balls(const SeenBalls& seen, std::span<const double> focal,
                                      std::span<const std::string> names, double known_radius_m);
 

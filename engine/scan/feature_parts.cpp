@@ -114,8 +114,8 @@ std::vector<double> main_directions(const Grey& picture, double x, double y, dou
     });
     for (int round = 0; round < 3; ++round) {
         for (std::size_t i = 0; i < kBins; ++i)
-            bins[i] = 0.25 * raw[(i + kBins - 1) % kBins] + 0.5 * raw[i] +
-                      0.25 * raw[(i + 1) % kBins];
+            bins[i] =
+                0.25 * raw[(i + kBins - 1) % kBins] + 0.5 * raw[i] + 0.25 * raw[(i + 1) % kBins];
         raw = bins;
     }
     const double most = *std::max_element(bins.begin(), bins.end());
@@ -137,29 +137,29 @@ void describe_fully(const Patch& patch, std::array<float, 128>& out) {
     const double field = 3.0 * patch.sigma;
     const double c = std::cos(patch.angle), s = std::sin(patch.angle);
     out.fill(0.0f);
-    around(*patch.picture, patch.x, patch.y, field * 0.5 * std::numbers::sqrt2 * (kFields + 1),
-           [&](double dx, double dy, const Slope& slope) {
-               // Fields along the patch's own direction and across it.
-               const double u = (c * dx + s * dy) / field, v = (-s * dx + c * dy) / field;
-               const double column = u + 0.5 * kFields - 0.5, row = v + 0.5 * kFields - 0.5;
-               if (column <= -1.0 || row <= -1.0 || column >= kFields || row >= kFields) return;
-               double turn = slope.direction - patch.angle;
-               if (turn < 0.0) turn += kTurn;
-               const double direction = turn / kTurn * kDirections;
-               const double near = std::exp(-(u * u + v * v) / (0.5 * kFields * kFields));
-               const int x0 = static_cast<int>(std::floor(column)),
-                         y0 = static_cast<int>(std::floor(row)),
-                         d0 = static_cast<int>(std::floor(direction));
-               for (int k = 0; k < 8; ++k) {
-                   const int x = x0 + (k & 1), y = y0 + (k >> 1 & 1), d = d0 + (k >> 2);
-                   if (x < 0 || y < 0 || x >= kFields || y >= kFields) continue;
-                   const double share = (1.0 - std::abs(column - x)) * (1.0 - std::abs(row - y)) *
-                                        (1.0 - std::abs(direction - d));
-                   out[static_cast<std::size_t>((y * kFields + x) * kDirections +
-                                                d % kDirections)] +=
-                       static_cast<float>(share * near * slope.strength);
-               }
-           });
+    around(
+        *patch.picture, patch.x, patch.y, field * 0.5 * std::numbers::sqrt2 * (kFields + 1),
+        [&](double dx, double dy, const Slope& slope) {
+            // Fields along the patch's own direction and across it.
+            const double u = (c * dx + s * dy) / field, v = (-s * dx + c * dy) / field;
+            const double column = u + 0.5 * kFields - 0.5, row = v + 0.5 * kFields - 0.5;
+            if (column <= -1.0 || row <= -1.0 || column >= kFields || row >= kFields) return;
+            double turn = slope.direction - patch.angle;
+            if (turn < 0.0) turn += kTurn;
+            const double direction = turn / kTurn * kDirections;
+            const double near = std::exp(-(u * u + v * v) / (0.5 * kFields * kFields));
+            const int x0 = static_cast<int>(std::floor(column)),
+                      y0 = static_cast<int>(std::floor(row)),
+                      d0 = static_cast<int>(std::floor(direction));
+            for (int k = 0; k < 8; ++k) {
+                const int x = x0 + (k & 1), y = y0 + (k >> 1 & 1), d = d0 + (k >> 2);
+                if (x < 0 || y < 0 || x >= kFields || y >= kFields) continue;
+                const double share = (1.0 - std::abs(column - x)) * (1.0 - std::abs(row - y)) *
+                                     (1.0 - std::abs(direction - d));
+                out[static_cast<std::size_t>((y * kFields + x) * kDirections + d % kDirections)] +=
+                    static_cast<float>(share * near * slope.strength);
+            }
+        });
     to_unit(out);
     for (float& value : out)
         value = std::min(value, kMost);

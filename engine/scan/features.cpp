@@ -105,7 +105,8 @@ void search(const std::vector<Grey>& blurred, double step, std::span<const std::
                 const int u = static_cast<int>(std::lround(feature.x)),
                           v = static_cast<int>(std::lround(feature.y));
                 if (u < 0 || v < 0 || u >= picture.width || v >= picture.height ||
-                    (!usable.empty() && usable[static_cast<std::size_t>(v * picture.width + u)] == 0))
+                    (!usable.empty() &&
+                     usable[static_cast<std::size_t>(v * picture.width + u)] == 0))
                     continue;
                 const double sigma = kFirstSigma * std::pow(2.0, peak.level / kScales);
                 feature.scale = static_cast<float>(sigma * step);
@@ -158,8 +159,7 @@ std::vector<Match> mutual(std::span<const Feature> a, std::span<const Feature> b
     const auto to_b = nearest(a, b, member, ratio), to_a = nearest(b, a, member, ratio);
     std::vector<Match> out;
     for (std::uint32_t i = 0; i < a.size(); ++i)
-        if (to_b[i] >= 0 &&
-            to_a[static_cast<std::size_t>(to_b[i])] == static_cast<std::int32_t>(i))
+        if (to_b[i] >= 0 && to_a[static_cast<std::size_t>(to_b[i])] == static_cast<std::int32_t>(i))
             out.push_back({i, static_cast<std::uint32_t>(to_b[i])});
     return out;
 }
@@ -172,8 +172,8 @@ std::vector<Feature> find_features(const Grey& picture, std::span<const std::uin
     constexpr double kOwnBlur = 0.5; // of a camera's picture, pixels
     std::vector<Found> found;
     double step = 0.5;
-    Grey base = blurred(doubled(picture),
-                        std::sqrt(kFirstSigma * kFirstSigma - 4.0 * kOwnBlur * kOwnBlur));
+    Grey base =
+        blurred(doubled(picture), std::sqrt(kFirstSigma * kFirstSigma - 4.0 * kOwnBlur * kOwnBlur));
     while (std::min(base.width, base.height) >= kLeastSide) {
         std::vector<Grey> levels = {std::move(base)};
         for (int s = 1; s < kScales + 3; ++s) {

@@ -12,10 +12,10 @@ namespace toile::scan {
 struct GlobalOptions {
     FeatureOptions features;
     Descriptor descriptor = Descriptor::full;
-    double ratio = 0.85;          ///< of the nearest to the second nearest description
-    double reach_m = 0.03;        ///< of a match that agrees
-    int draws = 20000;            ///< of four matches each (P1 2.2)
-    std::size_t fewest = 8;       ///< matches that must agree
+    double ratio = 0.85;    ///< of the nearest to the second nearest description
+    double reach_m = 0.03;  ///< of a match that agrees
+    int draws = 20000;      ///< of four matches each (P1 2.2)
+    std::size_t fewest = 8; ///< matches that must agree
 };
 
 struct GlobalRegistration {
@@ -26,9 +26,9 @@ struct GlobalRegistration {
 };
 
 /// From the features of two views: the motion that at least `fewest` matches agree with.
-[[nodiscard]] std::optional<GlobalRegistration>
-register_features(std::span<const Feature> a, std::span<const Feature> b,
-                  const GlobalOptions& options);
+[[nodiscard]] std::optional<GlobalRegistration> register_features(std::span<const Feature> a,
+                                                                  std::span<const Feature> b,
+                                                                  const GlobalOptions& options);
 
 /// The same, then point to plane. Nothing when too few points are alike, or the surfaces do not
 /// meet.

@@ -7,8 +7,8 @@
 namespace toile::scan {
 namespace {
 
-/// Gauss-Newton over the readings of views whose cameras are fixed to each other; pair(k, p, n, ...)
-/// adds the pair of a reading of view k, if any. `p` and `n` in the scan's coordinates.
+/// Gauss-Newton over the readings of views whose cameras are fixed to each other; pair(k, p, n,
+/// ...) adds the pair of a reading of view k, if any. `p` and `n` in the scan's coordinates.
 template <class Pair>
 Registered descend(std::span<const RigView> views, const Pose& start,
                    const RegistrationOptions& options, const RowLoop& rows, const Pair& pair) {
@@ -57,23 +57,22 @@ Registered register_rig(std::span<const RigView> views, std::span<const SurfaceM
     for (const RigView& view : views)
         camera_from_scan.push_back((start * view.rig_from_camera).inverse().cast<float>());
     const float least_cosine = std::cos(options.angle);
-    return descend(views, start, options, rows,
-                   [&](std::size_t k, const Vec3f& p, const Vec3f& n, float weight, int round,
-                       Sums& sums) {
-                       // The pairs become closer as the pose becomes better.
-                       const float reach =
-                           options.reach_m *
-                           std::max(0.25f, 1.0f - 0.12f * static_cast<float>(round));
-                       const SurfaceMap& map = maps[k];
-                       int x = 0, y = 0;
-                       if (!map.camera.pixel(camera_from_scan[k] * p, x, y)) return;
-                       const Vec3f& q = map.points[map.camera.at(x, y)];
-                       const Vec3f& m = map.normals[map.camera.at(x, y)];
-                       if (!(q.x() == q.x()) || (p - q).squaredNorm() > reach * reach ||
-                           m.dot(n) < least_cosine)
-                           return;
-                       sums.add(p, m, m.dot(p - q), weight, 0.25 * reach);
-                   });
+    return descend(
+        views, start, options, rows,
+        [&](std::size_t k, const Vec3f& p, const Vec3f& n, float weight, int round, Sums& sums) {
+            // The pairs become closer as the pose becomes better.
+            const float reach =
+                options.reach_m * std::max(0.25f, 1.0f - 0.12f * static_cast<float>(round));
+            const SurfaceMap& map = maps[k];
+            int x = 0, y = 0;
+            if (!map.camera.pixel(camera_from_scan[k] * p, x, y)) return;
+            const Vec3f& q = map.points[map.camera.at(x, y)];
+            const Vec3f& m = map.normals[map.camera.at(x, y)];
+            if (!(q.x() == q.x()) || (p - q).squaredNorm() > reach * reach ||
+                m.dot(n) < least_cosine)
+                return;
+            sums.add(p, m, m.dot(p - q), weight, 0.25 * reach);
+        });
 }
 
 Registered register_view(const DepthView& view, const SurfaceMap& map, const Pose& start,

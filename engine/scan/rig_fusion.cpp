@@ -6,6 +6,18 @@
 #include <numbers>
 
 namespace toile::scan {
+
+/// Unknowns: motions of the instants (in the scan), then of the cameras (in the world).
+struct RigSystem {
+    Eigen::MatrixXd h;
+    Eigen::VectorXd g;
+    Eigen::Index times = 0; ///< how many belong to the instants
+
+    [[nodiscard]] Eigen::Index camera(std::size_t c) const {
+        return times + static_cast<Eigen::Index>(6 * c);
+    }
+};
+
 namespace {
 
 constexpr float kTrackingVoxel_m = 0.01f, kTrackingTruncation_m = 0.04f;
@@ -123,18 +135,17 @@ Registered RigFusion::tracked(std::span<const RigView> views) const {
 /// rig that stands around it only neighbours do, from 90 degrees apart.
 std::vector<ViewPair> RigFusion::pairs(std::span<const Pose> poses) const {
     constexpr double kNeighbours = 1.75, kTurned = 1.5; // radians
-    const double angle =
-        report_.turn_rad > kTurned ? options_.pair_angle : std::max(kNeighbours, options_.pair_angle);
+    const double angle = report_.turn_rad > kTurned ? options_.pair_angle
+                                                    : std::max(kNeighbours, options_.pair_angle);
     constexpr std::size_t kEnough = 1500, kFewest = 4, kMost = 12; // for time's sake
-    return overlapping_pairs(poses, angle,
-                             std::clamp(kEnough / std::max<std::size_t>(1, views_.size()), kFewest,
-                                        kMost));
+    return overlapping_pairs(
+        poses, angle,
+        std::clamp(kEnough / std::max<std::size_t>(1, views_.size()), kFewest, kMost));
 }
 
 /// One Gauss-Newton step of all instants and cameras. Returns the rms between views.
 double RigFusion::step(std::span<const ViewPair> pairs, const JointOptions& options,
                        const CameraFreedom& freedom, double& longest) {
-    const bool free = freedom.turn_rad > 0.0 && freedom.shift_m > 0.0;
     std::vector<Pose> poses;
     for (std::size_t i = 0; i < views_.size(); ++i)
         poses.push_back(pose_of(i));
@@ -144,12 +155,32 @@ double RigFusion::step(std::span<const ViewPair> pairs, const JointOptions& opti
             sums[k] = mutual_sums(views_[pairs[k].a], views_[pairs[k].b], poses[pairs[k].a],
                                   poses[pairs[k].b], options);
     });
-    // Unknowns: motions of the instants, then of the cameras (in the world).
-    const auto times = static_cast<Eigen::Index>(6 * instants_.size());
-    const Eigen::Index n = times + static_cast<Eigen::Index>(6 * cameras_.size());
-    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
     double square = 0.0, weight = 0.0;
+    for (const Sums& pair : sums)
+        square += pair.square, weight += pair.weight;
+    if (weight == 0.0) return 0.0;
+    const bool free = freedom.turn_rad > 0.0 && freedom.shift_m > 0.0;
+    RigSystem system = gathered(pairs, sums, free);
+    hold(freedom, system);
+    const Eigen::VectorXd solution = -system.h.ldlt().solve(system.g);
+    if (!solution.allFinite()) return std::sqrt(square / weight);
+    for (std::size_t t = 1; t < instants_.size(); ++t)
+        instants_[t] =
+            moved(motion(solution.segment<6>(static_cast<Eigen::Index>(6 * t))), instants_[t]);
+    for (std::size_t c = 1; free && c < cameras_.size(); ++c)
+        cameras_[c] = moved(motion(solution.segment<6>(system.camera(c))), cameras_[c]);
+    longest = solution.lpNorm<Eigen::Infinity>();
+    return std::sqrt(square / weight);
+}
+
+/// Each pair's six unknowns as motions of two instants and, where they are free, two cameras.
+RigSystem RigFusion::gathered(std::span<const ViewPair> pairs, std::span<const Sums> sums,
+                              bool free) const {
+    RigSystem out;
+    out.times = static_cast<Eigen::Index>(6 * instants_.size());
+    const Eigen::Index n = out.times + static_cast<Eigen::Index>(6 * cameras_.size());
+    out.h = Eigen::MatrixXd::Zero(n, n);
+    out.g = Eigen::VectorXd::Zero(n);
     struct Block {
         Eigen::Index at;
         Matrix6 by;
@@ -157,55 +188,44 @@ double RigFusion::step(std::span<const ViewPair> pairs, const JointOptions& opti
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         std::vector<Block> blocks;
         for (const auto& [view, sign] : {std::pair{pairs[k].a, 1.0}, std::pair{pairs[k].b, -1.0}}) {
-            const std::uint32_t t = instant_of_[view], c = camera_of_[view];
+            const std::uint32_t t = instant_of_[view];
             blocks.push_back({Eigen::Index{6} * t, sign * Matrix6::Identity()});
             if (free)
-                blocks.push_back({times + Eigen::Index{6} * c, sign * carried(instants_[t])});
+                blocks.push_back({out.camera(camera_of_[view]), sign * carried(instants_[t])});
         }
         for (const Block& a : blocks) {
-            g.segment<6>(a.at) += a.by.transpose() * sums[k].g;
+            out.g.segment<6>(a.at) += a.by.transpose() * sums[k].g;
             for (const Block& b : blocks)
-                h.block<6, 6>(a.at, b.at) += a.by.transpose() * sums[k].h * b.by;
+                out.h.block<6, 6>(a.at, b.at) += a.by.transpose() * sums[k].h * b.by;
         }
-        square += sums[k].square;
-        weight += sums[k].weight;
     }
-    if (weight == 0.0) return 0.0;
-    // The first instant and the first camera stay; the others are held as far as they are not free.
+    return out;
+}
+
+/// The first instant and the first camera stay; other cameras are held as far as they are not free.
+void RigFusion::hold(const CameraFreedom& freedom, RigSystem& system) const {
     constexpr double kReading_m = 0.004, kAlike = 400.0; // so many readings err together
-    h.topLeftCorner<6, 6>().diagonal().array() += 1e9;
-    h.block<6, 6>(times, times).diagonal().array() += 1e9;
-    for (std::size_t c = 1; c < cameras_.size(); ++c) {
-        const Eigen::Index at = times + static_cast<Eigen::Index>(6 * c);
-        if (!free) {
-            h.block<6, 6>(at, at).diagonal().array() += 1e9;
+    constexpr double kFixed = 1e9;
+    const bool free = freedom.turn_rad > 0.0 && freedom.shift_m > 0.0;
+    system.h.topLeftCorner<6, 6>().diagonal().array() += kFixed;
+    for (std::size_t c = 0; c < cameras_.size(); ++c) {
+        const Eigen::Index at = system.camera(c);
+        if (c == 0 || !free) {
+            system.h.block<6, 6>(at, at).diagonal().array() += kFixed;
             continue;
         }
-        const Pose off = cameras_[c] * told_[c].inverse();
-        const Eigen::AngleAxisd turn(off.linear());
-        // Its place by itself: a motion about the camera's own place.
-        const Pose about = Pose(Eigen::Translation3d(-cameras_[c].translation()));
-        const Matrix6 local = carried(about);
-        Vector6 away;
+        const Eigen::AngleAxisd turn((cameras_[c] * told_[c].inverse()).linear());
+        // What a motion of the world is at the camera's own place.
+        const Matrix6 local = carried(Pose(Eigen::Translation3d(-cameras_[c].translation())));
+        Vector6 away, weight;
         away << turn.angle() * turn.axis(), cameras_[c].translation() - told_[c].translation();
-        Vector6 hold;
         const double readings = kAlike * kReading_m * kReading_m;
-        hold << Vec3d::Constant(readings / (freedom.turn_rad * freedom.turn_rad)),
+        weight << Vec3d::Constant(readings / (freedom.turn_rad * freedom.turn_rad)),
             Vec3d::Constant(readings / (freedom.shift_m * freedom.shift_m));
-        h.block<6, 6>(at, at) += local.transpose() * hold.asDiagonal() * local;
-        g.segment<6>(at) += local.transpose() * hold.asDiagonal() * away;
+        system.h.block<6, 6>(at, at) += local.transpose() * weight.asDiagonal() * local;
+        system.g.segment<6>(at) += local.transpose() * weight.asDiagonal() * away;
     }
-    h.diagonal().array() += 1e-6;
-    const Eigen::VectorXd solution = -h.ldlt().solve(g);
-    if (!solution.allFinite()) return std::sqrt(square / weight);
-    for (std::size_t t = 1; t < instants_.size(); ++t)
-        instants_[t] = moved(motion(solution.segment<6>(static_cast<Eigen::Index>(6 * t))),
-                             instants_[t]);
-    for (std::size_t c = 1; free && c < cameras_.size(); ++c)
-        cameras_[c] = moved(
-            motion(solution.segment<6>(times + static_cast<Eigen::Index>(6 * c))), cameras_[c]);
-    longest = solution.lpNorm<Eigen::Infinity>();
-    return std::sqrt(square / weight);
+    system.h.diagonal().array() += 1e-6;
 }
 
 void RigFusion::place(const CameraFreedom& freedom) {
@@ -225,9 +245,8 @@ void RigFusion::place(const CameraFreedom& freedom) {
         }
     }
     for (std::size_t c = 0; c < cameras_.size(); ++c)
-        report_.cameras_moved_m =
-            std::max(report_.cameras_moved_m,
-                     (cameras_[c].translation() - told_[c].translation()).norm());
+        report_.cameras_moved_m = std::max(
+            report_.cameras_moved_m, (cameras_[c].translation() - told_[c].translation()).norm());
 }
 
 FusedSurface RigFusion::finish(const std::optional<geometry::Plane>& floor,

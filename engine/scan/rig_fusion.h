@@ -25,6 +25,9 @@ struct RigReport {
     double cameras_moved_m = 0.0; ///< the most that a camera's place was corrected
 };
 
+struct RigSystem;
+struct Sums;
+
 /// Feed instants in order, `place` once or not at all, then `finish` once.
 class RigFusion {
   public:
@@ -38,8 +41,8 @@ class RigFusion {
     /// against what was seen before. What does not fit is lost and counted.
     void add(std::vector<CameraView> instant);
 
-    /// Places all instants at once, and the cameras as far as they are free; the first camera stays.
-    /// \throw Error when nothing was seen
+    /// Places all instants at once, and the cameras as far as they are free; the first camera
+    /// stays. \throw Error when nothing was seen
     void place(const CameraFreedom& freedom);
 
     /// As corrected by `place`.
@@ -58,6 +61,9 @@ class RigFusion {
     [[nodiscard]] Pose pose_of(std::size_t view) const {
         return instants_[instant_of_[view]] * cameras_[camera_of_[view]];
     }
+    [[nodiscard]] RigSystem gathered(std::span<const ViewPair> pairs, std::span<const Sums> sums,
+                                     bool free) const;
+    void hold(const CameraFreedom& freedom, RigSystem& system) const;
     double step(std::span<const ViewPair> pairs, const JointOptions& options,
                 const CameraFreedom& freedom, double& longest);
 

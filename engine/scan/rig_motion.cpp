@@ -10,8 +10,8 @@
 namespace toile::scan {
 namespace {
 
-constexpr std::size_t kFewest = 8;   // places that two cameras must share
-constexpr double kReach_m = 0.03;    // of a pair that agrees
+constexpr std::size_t kFewest = 8;    // places that two cameras must share
+constexpr double kReach_m = 0.03;     // of a pair that agrees
 constexpr double kLeastSpread = 0.04; // metres off a line
 
 /// Rms of points off the straight line that is nearest to them.
@@ -162,8 +162,8 @@ class Chain {
     }
 
     [[noreturn]] void refuse(const std::vector<bool>& placed) const {
-        const auto at = static_cast<std::size_t>(
-            std::find(placed.begin(), placed.end(), false) - placed.begin());
+        const auto at = static_cast<std::size_t>(std::find(placed.begin(), placed.end(), false) -
+                                                 placed.begin());
         const auto own = std::count_if(seen_[at].begin(), seen_[at].end(),
                                        [](const auto& place) { return place.has_value(); });
         const std::string who = "camera '" + names_[at] + "'";

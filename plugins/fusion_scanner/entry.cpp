@@ -77,8 +77,8 @@ class FusionScanner {
                 cameras_.push_back({streams[c].camera,
                                     std::size_t{streams[c].depth.width} * streams[c].depth.height});
             }
-            session_ = std::make_unique<fusion::FusionSession>(std::move(cameras), options(),
-                                                               rows());
+            session_ =
+                std::make_unique<fusion::FusionSession>(std::move(cameras), options(), rows());
         } catch (const toile::Error& e) {
             throw sdk::bad_argument(e.what());
         }

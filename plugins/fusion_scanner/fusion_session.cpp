@@ -101,9 +101,8 @@ void FusionSession::keep(std::vector<Seen> instant) {
         if (!floor_ && seen.floor) {
             const Eigen::Isometry3f move =
                 cameras_[seen.view.camera].world_from_camera->cast<float>();
-            floor_ = geometry::Plane::through(
-                move * Vec3f(seen.floor->offset * seen.floor->normal),
-                move.linear() * seen.floor->normal);
+            floor_ = geometry::Plane::through(move * Vec3f(seen.floor->offset * seen.floor->normal),
+                                              move.linear() * seen.floor->normal);
         }
         views.push_back(std::move(seen.view));
     }

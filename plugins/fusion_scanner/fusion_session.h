@@ -12,8 +12,8 @@ namespace toile::fusion_scanner {
 struct SessionOptions {
     scan::FilterOptions filter;
     scan::FusionOptions fusion;
-    bool choose_radius = true; ///< rougher readings are smoothed more widely
-    int averaged_frames = 1;   ///< of so many frames in a row one picture is made
+    bool choose_radius = true;   ///< rougher readings are smoothed more widely
+    int averaged_frames = 1;     ///< of so many frames in a row one picture is made
     scan::CameraFreedom cameras; ///< how far several are corrected by what they see
 };
 
@@ -61,9 +61,9 @@ class FusionSession {
     std::vector<SessionCamera> cameras_;
     SessionOptions options_;
     RowLoop rows_;
-    bool begun_ = false;                        ///< once a frame shows something
-    std::unique_ptr<scan::RigidFusion> fusion_; ///< of one camera
-    std::unique_ptr<scan::RigFusion> rig_;      ///< of several
+    bool begun_ = false;                                   ///< once a frame shows something
+    std::unique_ptr<scan::RigidFusion> fusion_;            ///< of one camera
+    std::unique_ptr<scan::RigFusion> rig_;                 ///< of several
     std::vector<std::vector<std::vector<float>>> waiting_; ///< (cameras) to be averaged
     std::optional<geometry::Plane> floor_; ///< in the first camera's coordinates; several: world
     std::size_t fed_ = 0, empty_ = 0;

@@ -27,8 +27,8 @@ std::vector<Place> places() {
     const Vec3d home(0.0, 1.05, 2.0);
     std::vector<Place> out = {{"", sensor::look_at(home, target)}};
     for (const double aside : {-0.3, -0.15, 0.15, 0.3})
-        out.push_back({"pan", sensor::look_at(home + Vec3d(aside, 0, 0),
-                                              target + Vec3d(aside, 0, 0))});
+        out.push_back(
+            {"pan", sensor::look_at(home + Vec3d(aside, 0, 0), target + Vec3d(aside, 0, 0))});
     for (const double roll : {20.0, 45.0, -90.0})
         out.push_back({"spin", sensor::look_at(home, target, roll * kDegree)});
     for (const double far : {1.6, 2.5})
@@ -72,9 +72,9 @@ std::vector<View> look(const std::string& person, const scan::GlobalOptions& opt
             colors.push_back({color.pixels[i], color.pixels[i + 1], color.pixels[i + 2], 255});
         const scan::Picture picture{simulator.camera(c).intrinsics(),
                                     simulator.camera(c).depth().metres, colors};
-        const Vec3f up = (simulator.camera(c).settings().world_from_camera.linear().transpose() *
-                          Vec3d::UnitY())
-                             .cast<float>();
+        const Vec3f up =
+            (simulator.camera(c).settings().world_from_camera.linear().transpose() * Vec3d::UnitY())
+                .cast<float>();
         const scan::Subject subject = scan::find_subject(picture, up);
         if (!subject.trouble.empty()) throw Error(person + ": " + subject.trouble);
         View& view = out.emplace_back();
@@ -113,9 +113,9 @@ void add(const View& a, const View& b, const Eigen::Isometry3d& a_from_b,
         row.matches += 1;
         const bool right = error(m) < kRight_m;
         row.right += right ? 1 : 0;
-        if (!found || (to[m.a].point.cast<double>() -
-                       found->a_from_b * from[m.b].point.cast<double>())
-                              .norm() > options.reach_m)
+        if (!found ||
+            (to[m.a].point.cast<double>() - found->a_from_b * from[m.b].point.cast<double>())
+                    .norm() > options.reach_m)
             continue;
         row.kept += 1;
         row.kept_right += right ? 1 : 0;
@@ -179,11 +179,11 @@ void converge(const View& a, const View& b, const Eigen::Isometry3d& right,
     ++out.tries;
     const Eigen::Isometry3d start = wrong_start(right, middle, random);
     out.points += good(scan::register_clouds(cloud_a, cloud_b, start, 1e-9, 100).pose) ? 1 : 0;
-    out.planes += good(scan::register_surfaces(a.depth, b.depth, start, 0.3f,
-                                               evaluation::rows_on_all_cores)
-                           .pose)
-                      ? 1
-                      : 0;
+    out.planes +=
+        good(scan::register_surfaces(a.depth, b.depth, start, 0.3f, evaluation::rows_on_all_cores)
+                 .pose)
+            ? 1
+            : 0;
     for (const auto descriptor : {scan::Descriptor::full, scan::Descriptor::simple}) {
         options.descriptor = descriptor;
         const auto found =

@@ -36,8 +36,8 @@ void print_errors(const std::vector<Eigen::Isometry3d>& truth, const imaging::Ri
     double most_mm = 0.0, most_deg = 0.0, most_there = 0.0;
     for (std::size_t c = 1; c < truth.size(); ++c) {
         const Eigen::Isometry3d wanted = truth[0].inverse() * truth[c];
-        const Eigen::Isometry3d found = rig.cameras[0].world_from_camera.inverse() *
-                                        rig.cameras[c].world_from_camera;
+        const Eigen::Isometry3d found =
+            rig.cameras[0].world_from_camera.inverse() * rig.cameras[c].world_from_camera;
         const double mm = 1e3 * (wanted.translation() - found.translation()).norm();
         const double deg =
             Eigen::AngleAxisd(wanted.linear().transpose() * found.linear()).angle() * 57.29578;

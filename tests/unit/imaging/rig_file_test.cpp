@@ -41,8 +41,8 @@ TEST(RigFile, ComesBackAsItWasWritten) {
     ASSERT_EQ(read.cameras.size(), 2u);
     for (std::size_t c = 0; c < 2; ++c) {
         EXPECT_EQ(read.cameras[c].name, rig.cameras[c].name);
-        EXPECT_TRUE(read.cameras[c].world_from_camera.isApprox(rig.cameras[c].world_from_camera,
-                                                               1e-12));
+        EXPECT_TRUE(
+            read.cameras[c].world_from_camera.isApprox(rig.cameras[c].world_from_camera, 1e-12));
     }
     EXPECT_EQ(read.report, rig.report);
     EXPECT_THAT(test::JsonSchema("rig.schema.json").faults(parse_json_file(folder / "rig.json")),

@@ -27,8 +27,7 @@ std::vector<float> scene(const Vec3f& centre, float radius, float noise_m, std::
         p += centre;
     const auto add = [&](const geometry::TriangleMesh& other) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-        mesh.positions.insert(mesh.positions.end(), other.positions.begin(),
-                              other.positions.end());
+        mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
         for (const Triangle& t : other.triangles)
             mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     };

@@ -88,7 +88,7 @@ TEST(Features, DescriptionsHaveUnitLengthAndDoNotSeeBrightness) {
                 off += std::abs(a[i].simple[k] - b[i].simple[k]);
             }
             EXPECT_NEAR(length, 1.0, 1e-5);
-            EXPECT_LT(off, 0.02);
+            EXPECT_LT(off, 0.05); // of 128 or 12 numbers together
         }
     }
 }

@@ -27,8 +27,8 @@ std::vector<CameraView> instant(std::span<const Pose> cameras, double turn, std:
     std::vector<CameraView> out;
     for (std::uint32_t c = 0; c < cameras.size(); ++c) {
         const auto camera = small_depth_camera();
-        const auto depth = depth_picture(lump(), camera, subject.inverse() * cameras[c], 0.002f,
-                                         16 * seed + c);
+        const auto depth =
+            depth_picture(lump(), camera, subject.inverse() * cameras[c], 0.002f, 16 * seed + c);
         const Subject found = find_subject({camera, depth, {}}, Vec3f::UnitY());
         EXPECT_EQ(found.trouble, "");
         out.push_back({c, filtered_view({camera, depth, {}}, found.mask, {}, serial_rows)});
@@ -59,8 +59,8 @@ TEST(RigFusion, ATurningSubjectComesOutAsItStoodFirst) {
     const auto cameras = two_cameras();
     RigFusion fusion({}, cameras, serial_rows);
     for (int k = 0; k < 18; ++k)
-        fusion.add(instant(cameras, 20.0 * k * std::numbers::pi / 180.0,
-                           static_cast<std::uint64_t>(k)));
+        fusion.add(
+            instant(cameras, 20.0 * k * std::numbers::pi / 180.0, static_cast<std::uint64_t>(k)));
     fusion.place({});
     EXPECT_EQ(fusion.report().instants, 18u);
     EXPECT_EQ(fusion.report().lost_instants, 0u);
@@ -76,8 +76,8 @@ TEST(RigFusion, WhatTurnsTellsWhereCamerasAre) {
     const std::vector<Pose> wrong = {cameras[0], moved(cameras[1], 0.01, {0.008, -0.01, 0.005})};
     RigFusion fusion({}, wrong, serial_rows);
     for (int k = 0; k < 18; ++k)
-        fusion.add(instant(cameras, 20.0 * k * std::numbers::pi / 180.0,
-                           static_cast<std::uint64_t>(k)));
+        fusion.add(
+            instant(cameras, 20.0 * k * std::numbers::pi / 180.0, static_cast<std::uint64_t>(k)));
     fusion.place({0.05, 0.1});
     EXPECT_TRUE(fusion.world_from_camera()[0].isApprox(cameras[0], 1e-12));
     const Pose off = cameras[1].inverse() * fusion.world_from_camera()[1];

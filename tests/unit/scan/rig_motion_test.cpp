@@ -100,9 +100,7 @@ TEST(Rig, FourCamerasAreFoundThroughTheirNeighbours) {
     const auto cameras = around(4);
     const auto places = many(60);
     // Opposite cameras never see the same: one side each, a quarter of them nobody but one.
-    const auto sees = [&](std::size_t c, std::size_t k) {
-        return k % 4 == c || (k + 1) % 4 == c;
-    };
+    const auto sees = [&](std::size_t c, std::size_t k) { return k % 4 == c || (k + 1) % 4 == c; };
     const SeenPlaces exact = seen_by(cameras, places, 0.0, sees);
     const SolvedRig rig = solve_rig(exact, names(4));
     for (std::size_t c = 0; c < 4; ++c)
