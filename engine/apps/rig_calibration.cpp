@@ -4,8 +4,8 @@
 #include "geometry/floor_plane.h"
 #include "pipeline/body_fit.h"
 #include "scan/ball_rig.h"
-#include "scan/rig_fusion.h"
 #include "scan/subject.h"
+#include "scan/turn_rig.h"
 
 #include <cstdio>
 #include <numbers>
@@ -138,38 +138,73 @@ std::vector<scan::Pose> places_from_body(std::vector<pipeline::SensorStream> str
     return out;
 }
 
-/// The surfaces that all cameras see, laid on each other.
-imaging::RigFile person_rig(CameraSet& cameras, const RigRequest& request, host::Registry& registry,
-                            host::Services& services, const toile_limits& limits) {
-    const auto& streams = cameras.streams();
-    const std::vector<Instant> instants = all_instants(cameras, request.frames);
-    const auto places = places_from_body(streams, instants, registry, services, limits);
-    const RowLoop rows = rows_of(services);
-    scan::RigFusion fusion({}, places, rows);
+/// (instants) what each camera sees of the subject, from the first instant at which all see it.
+using Seen = std::vector<std::vector<scan::CameraView>>;
+
+Seen subjects(const std::vector<pipeline::SensorStream>& streams,
+              const std::vector<Instant>& instants, const RowLoop& rows) {
+    Seen out;
     for (const Instant& instant : instants) {
         std::vector<scan::CameraView> views;
         for (std::uint32_t c = 0; c < streams.size(); ++c) {
             const scan::Picture picture{streams[c].depth, instant[c].depth.metres, {}};
-            const Vec3f up = (places[c].linear().transpose() * Vec3d::UnitY()).cast<float>();
-            const scan::Subject subject = scan::find_subject(picture, up);
+            const scan::Subject subject = scan::find_subject(picture, Vec3f::UnitY());
             if (subject.trouble.empty())
                 views.push_back({c, scan::filtered_view(picture, subject.mask, {}, rows)});
         }
-        fusion.add(std::move(views));
+        if (!out.empty() || views.size() == streams.size()) out.push_back(std::move(views));
     }
-    fusion.place({0.05, 0.1});
+    if (out.empty()) throw Error("at no time do all cameras see a person");
+    return out;
+}
+
+/// By how the person turns before each camera; nothing when somebody stands still.
+std::optional<std::vector<scan::Pose>> places_from_turn(const Seen& seen,
+                                                        const std::vector<std::string>& names,
+                                                        const RowLoop& rows) {
+    std::vector<scan::TurnTrack> tracks;
+    for (std::uint32_t c = 0; c < names.size(); ++c) {
+        std::vector<scan::DepthView> pictures;
+        for (const auto& instant : seen)
+            for (const scan::CameraView& view : instant)
+                if (view.camera == c) pictures.push_back(view.view);
+        tracks.push_back(scan::follow_turn(pictures, rows));
+        if (c == 0 && tracks[0].turn_rad < scan::kLeastTurn_rad) return std::nullopt;
+    }
+    return scan::places_from_turns(tracks, names);
+}
+
+/// First roughly, then the surfaces that all cameras see are laid on each other.
+imaging::RigFile person_rig(CameraSet& cameras, const RigRequest& request,
+                            host::Registry& registry, host::Services& services,
+                            const toile_limits& limits) {
+    const auto& streams = cameras.streams();
+    const RowLoop rows = rows_of(services);
+    const std::vector<Instant> instants = all_instants(cameras, request.frames);
+    const std::vector<std::string> names = names_of(cameras);
+    Seen seen = subjects(streams, instants, rows);
+    const auto turned = places_from_turn(seen, names, rows);
+    const auto rough =
+        turned ? *turned : places_from_body(streams, instants, registry, services, limits);
+    scan::RigFusion fusion({}, rough, rows);
+    for (auto& instant : seen)
+        fusion.add(std::move(instant));
+    constexpr scan::CameraFreedom kFree{0.05, 0.1};
+    fusion.place(kFree);
     const scan::RigReport& report = fusion.report();
     imaging::RigFile out;
     out.method = request.method;
     const Eigen::Isometry3d world =
-        streams[0].world_from_camera.value_or(places[0]) * places[0].inverse();
+        streams[0].world_from_camera.value_or(upright(streams[0], instants[0][0].depth)) *
+        rough[0].inverse();
     for (std::size_t c = 0; c < streams.size(); ++c)
-        out.cameras.push_back({streams[c].name, world * fusion.world_from_camera()[c]});
+        out.cameras.push_back({names[c], world * fusion.world_from_camera()[c]});
     out.report = {{"instants", report.instants},
                   {"lost", report.lost_instants},
+                  {"found_by", turned ? "turn" : "body"},
                   {"turn_deg", report.turn_rad * 180.0 / std::numbers::pi},
                   {"views_rms_m", report.views_rms_m},
-                  {"moved_from_body_m", report.cameras_moved_m}};
+                  {"moved_m", report.cameras_moved_m}};
     return out;
 }
 

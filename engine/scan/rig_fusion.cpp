@@ -65,8 +65,8 @@ RigFusion::RigFusion(const FusionOptions& options, std::vector<Pose> world_from_
       told_(cameras_) {}
 RigFusion::~RigFusion() = default;
 
-void RigFusion::add(std::vector<CameraView> instant) {
-    if (instant.empty()) return;
+bool RigFusion::add(std::vector<CameraView> instant) {
+    if (instant.empty()) return false;
     if (!model_) {
         VolumeOptions coarse;
         coarse.voxel_m = kTrackingVoxel_m;
@@ -75,16 +75,18 @@ void RigFusion::add(std::vector<CameraView> instant) {
         Pose first = Pose::Identity();
         first.translation() = -middle_of(instant, cameras_);
         keep(std::move(instant), first);
-        return;
+        return true;
     }
     std::vector<RigView> views;
     for (const CameraView& seen : instant)
         views.push_back({&seen.view, cameras_[seen.camera]});
     const Registered found = tracked(views);
-    if (found.overlap < kLeastOverlap || found.rms_m > kMostRms_m)
+    if (found.overlap < kLeastOverlap || found.rms_m > kMostRms_m) {
         ++report_.lost_instants;
-    else
-        keep(std::move(instant), found.pose);
+        return false;
+    }
+    keep(std::move(instant), found.pose);
+    return true;
 }
 
 void RigFusion::keep(std::vector<CameraView> instant, const Pose& scan_from_world) {

@@ -38,8 +38,8 @@ class RigFusion {
     RigFusion& operator=(const RigFusion&) = delete;
 
     /// Pictures of one instant, of the cameras that see the subject; all are placed together
-    /// against what was seen before. What does not fit is lost and counted.
-    void add(std::vector<CameraView> instant);
+    /// against what was seen before. What does not fit is lost and counted, and false.
+    bool add(std::vector<CameraView> instant);
 
     /// Places all instants at once, and the cameras as far as they are free; the first camera
     /// stays. \throw Error when nothing was seen
@@ -47,6 +47,8 @@ class RigFusion {
 
     /// As corrected by `place`.
     [[nodiscard]] const std::vector<Pose>& world_from_camera() const { return cameras_; }
+    /// Of the instants that were kept: where the subject's own coordinates are.
+    [[nodiscard]] const std::vector<Pose>& scan_from_world() const { return instants_; }
     [[nodiscard]] const RigReport& report() const { return report_; }
 
     /// In the world, as the subject stood in the first instant. `floor`: in the world. `progress`

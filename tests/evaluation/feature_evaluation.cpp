@@ -2,6 +2,7 @@
 // ICP. PERSON: folders of `toile avatar test-people`; each is seen by simulated
 // cameras beside, turned about, before and around a first one.
 #include "core/error.h"
+#include "core/random.h"
 #include "scan/global_registration.h"
 #include "scan/subject.h"
 #include "scan/voxel_grid.h"
