@@ -9,7 +9,7 @@
 namespace toile::scan {
 
 struct FeatureOptions {
-    double contrast = 0.012;  ///< least difference of a point from its surroundings, of [0, 1]
+    double contrast = 0.006;  ///< least difference of a point from its surroundings, of [0, 1]
     double edge_ratio = 10.0; ///< most ratio of the bends: beyond it is a line and no point
     std::size_t most = 2000;  ///< points that are kept, strongest first
 };

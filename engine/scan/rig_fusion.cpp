@@ -28,6 +28,15 @@ double angle_of(const Pose& motion) {
     return Eigen::AngleAxisd(motion.linear()).angle();
 }
 
+/// A motion so many times over, or a share of it.
+Pose times_over(const Pose& motion, double times) {
+    const Eigen::AngleAxisd turn(motion.linear());
+    Pose out = Pose::Identity();
+    out.linear() = Eigen::AngleAxisd(times * turn.angle(), turn.axis()).toRotationMatrix();
+    out.translation() = times * motion.translation();
+    return out;
+}
+
 /// Of all readings, in the world.
 Vec3d middle_of(std::span<const CameraView> instant, std::span<const Pose> cameras) {
     Vec3d sum = Vec3d::Zero();
@@ -81,10 +90,14 @@ bool RigFusion::add(std::vector<CameraView> instant) {
     for (const CameraView& seen : instant)
         views.push_back({&seen.view, cameras_[seen.camera]});
     const Registered found = tracked(views);
-    if (found.overlap < kLeastOverlap || found.rms_m > kMostRms_m) {
+    if (!fits(found)) {
         ++report_.lost_instants;
+        ++missed_;
         return false;
     }
+    gap_ = missed_ + 1;
+    missed_ = 0;
+    last_rms_m_ = found.rms_m;
     keep(std::move(instant), found.pose);
     return true;
 }
@@ -103,12 +116,23 @@ void RigFusion::keep(std::vector<CameraView> instant, const Pose& scan_from_worl
     report_.instants = instants_.size();
 }
 
+/// Where an arm moves aside much is new, and what is not new must fit as well as it did before.
+bool RigFusion::fits(const Registered& found) const {
+    constexpr double kLeastKnown = 0.3, kAsBefore = 2.0;
+    if (found.overlap >= kLeastOverlap) return found.rms_m <= kMostRms_m;
+    return found.overlap >= kLeastKnown && found.rms_m <= kAsBefore * last_rms_m_;
+}
+
 /// Against the model, from where the motion would go on, or else from where the last instant was.
 Registered RigFusion::tracked(std::span<const RigView> views) const {
     constexpr int kStride = 2;
     const Pose& last = instants_.back();
+    // While instants are lost (an arm before the rest) the subject turns on as it did.
     const Pose step =
-        instants_.size() < 2 ? Pose::Identity() : last * instants_[instants_.size() - 2].inverse();
+        instants_.size() < 2
+            ? Pose::Identity()
+            : times_over(last * instants_[instants_.size() - 2].inverse(),
+                         static_cast<double>(missed_ + 1) / static_cast<double>(gap_));
     struct Try {
         Pose start;
         std::array<float, 2> reach_m;

@@ -58,6 +58,7 @@ class RigFusion {
 
   private:
     void keep(std::vector<CameraView> instant, const Pose& scan_from_world);
+    [[nodiscard]] bool fits(const Registered& found) const;
     [[nodiscard]] Registered tracked(std::span<const RigView> views) const;
     [[nodiscard]] std::vector<ViewPair> pairs(std::span<const Pose> poses) const;
     [[nodiscard]] Pose pose_of(std::size_t view) const {
@@ -76,6 +77,9 @@ class RigFusion {
     std::vector<DepthView> views_;
     std::vector<std::uint32_t> camera_of_, instant_of_; ///< (views)
     std::unique_ptr<Volume> model_;
+    double last_rms_m_ = 0.0; ///< of the last instant that was kept, against the model
+    std::size_t missed_ = 0;  ///< instants that were lost since the last one that was kept
+    std::size_t gap_ = 1;     ///< instants from the last but one that was kept to the last
     RigReport report_;
 };
 
