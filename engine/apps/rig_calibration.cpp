@@ -159,9 +159,8 @@ Seen subjects(const std::vector<pipeline::SensorStream>& streams,
 }
 
 /// By how the person turns before each camera; nothing when somebody stands still.
-std::optional<std::vector<scan::Pose>> places_from_turn(const Seen& seen,
-                                                        const std::vector<std::string>& names,
-                                                        const RowLoop& rows) {
+std::optional<std::vector<scan::Pose>>
+places_from_turn(const Seen& seen, const std::vector<std::string>& names, const RowLoop& rows) {
     std::vector<scan::TurnTrack> tracks;
     for (std::uint32_t c = 0; c < names.size(); ++c) {
         std::vector<scan::DepthView> pictures;
@@ -175,9 +174,8 @@ std::optional<std::vector<scan::Pose>> places_from_turn(const Seen& seen,
 }
 
 /// First roughly, then the surfaces that all cameras see are laid on each other.
-imaging::RigFile person_rig(CameraSet& cameras, const RigRequest& request,
-                            host::Registry& registry, host::Services& services,
-                            const toile_limits& limits) {
+imaging::RigFile person_rig(CameraSet& cameras, const RigRequest& request, host::Registry& registry,
+                            host::Services& services, const toile_limits& limits) {
     const auto& streams = cameras.streams();
     const RowLoop rows = rows_of(services);
     const std::vector<Instant> instants = all_instants(cameras, request.frames);

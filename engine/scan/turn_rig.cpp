@@ -108,9 +108,8 @@ class Target {
             if (p.y() < low_ || p.y() > high_) continue;
             const auto near = tree_.nearest(p);
             const double share = near.squared / (reach * reach);
-            const bool alike = share < 1.0 &&
-                               track_.normals[near.index].dot(pose.linear() * other.normals[i]) >
-                                   kLeastCosine;
+            const bool alike = share < 1.0 && track_.normals[near.index].dot(
+                                                  pose.linear() * other.normals[i]) > kLeastCosine;
             sum += alike ? 1.0 - share : -kMissed;
         }
         return sum * static_cast<double>(every) / static_cast<double>(other.points.size());
@@ -185,8 +184,7 @@ TurnTrack follow_turn(std::span<const DepthView> pictures, const RowLoop& rows) 
     constexpr int kStride = 2;
     for (std::size_t k = 0; k < used.size(); ++k) {
         const DepthView& view = pictures[used[k]];
-        const Eigen::Isometry3f move =
-            (out.axis_from_camera * motions[k].inverse()).cast<float>();
+        const Eigen::Isometry3f move = (out.axis_from_camera * motions[k].inverse()).cast<float>();
         for (int y = 0; y < view.camera.height; y += kStride)
             for (int x = 0; x < view.camera.width; x += kStride) {
                 const std::size_t i = view.camera.at(x, y);
@@ -204,10 +202,10 @@ std::vector<Pose> places_from_turns(std::span<const TurnTrack> tracks,
     constexpr std::size_t kFewest = 200; // points of a surface
     for (std::size_t c = 0; c < tracks.size(); ++c)
         if (tracks[c].turn_rad < kLeastTurn_rad || tracks[c].points.size() < kFewest)
-            throw Error("camera '" + names[c] + "' saw it turn by " +
-                        std::to_string(static_cast<int>(tracks[c].turn_rad * 180.0 /
-                                                        std::numbers::pi)) +
-                        " degrees only: let the person turn once, slowly, without swaying");
+            throw Error(
+                "camera '" + names[c] + "' saw it turn by " +
+                std::to_string(static_cast<int>(tracks[c].turn_rad * 180.0 / std::numbers::pi)) +
+                " degrees only: let the person turn once, slowly, without swaying");
     std::vector<Pose> axes(tracks.size(), Pose::Identity()); // first axis from each
     std::vector<bool> placed(tracks.size(), false);
     placed[0] = true;

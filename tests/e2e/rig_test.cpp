@@ -31,7 +31,8 @@ class RigTest : public testing::Test {
         motion.high = Vec3f(0.5f, 1.4f, 0.5f);
         write_ball_motion(*folder_ / "ball.cache", motion);
         record("ball", R"("frames": 30, "people": [{"body": {"surfaces": "ball.cache"}}])");
-        record("turn", R"("frames": 19, "people": [{"body": {"avatar": "woman"}, "turntable_s": 0.6}])");
+        record("turn",
+               R"("frames": 19, "people": [{"body": {"avatar": "woman"}, "turntable_s": 0.6}])");
     }
     static void TearDownTestSuite() { folder_.reset(); }
 
@@ -81,9 +82,9 @@ TEST_F(RigTest, AMovedBallTellsWhereCamerasStandAndTheyScanTogether) {
     EXPECT_LT(metres, 0.006);
     EXPECT_LT(degrees, 0.2);
 
-    const auto scanned = scan("turn", {"--extrinsics", path("ball_rig.json"), "--out",
-                                       path("woman.ply"), "--report", path("woman.json"),
-                                       "--triangles", "30000"});
+    const auto scanned =
+        scan("turn", {"--extrinsics", path("ball_rig.json"), "--out", path("woman.ply"), "--report",
+                      path("woman.json"), "--triangles", "30000"});
     ASSERT_EQ(scanned.status, 0) << scanned.output;
     const auto report = parse_json_file(path("woman.json"));
     EXPECT_EQ(report.at("cameras"), 2);
@@ -92,8 +93,7 @@ TEST_F(RigTest, AMovedBallTellsWhereCamerasStandAndTheyScanTogether) {
     const auto mesh = assets::load_colored_mesh(path("woman.ply")).mesh;
     const auto topology = geometry::check_topology(mesh.positions, mesh.triangles);
     EXPECT_TRUE(topology.closed()) << topology.text();
-    const auto woman =
-        assets::load_colored_mesh(*folder_ / "turn" / "truth" / "surfaces.glb").mesh;
+    const auto woman = assets::load_colored_mesh(*folder_ / "turn" / "truth" / "surfaces.glb").mesh;
     const geometry::NearestSurface surface(woman.positions, woman.triangles);
     double mean = 0.0; // as it stands: the first camera knew its place
     for (const Vec3f& p : mesh.positions)
@@ -130,7 +130,8 @@ TEST_F(RigTest, SaysWhatIsWrong) {
             "is of 3 cameras, the sources have 2");
     fs::copy(path("turn"), path("lost"), fs::copy_options::recursive);
     fs::remove(path("lost") + "/side/extrinsic.json");
-    refused(scan("lost", {"--out", path("a.ply")}), 1, "camera 2 of 2 does not know where it stands");
+    refused(scan("lost", {"--out", path("a.ply")}), 1,
+            "camera 2 of 2 does not know where it stands");
     EXPECT_FALSE(fs::exists(path("a.json")));
     EXPECT_FALSE(fs::exists(path("a.ply")));
 }

@@ -227,10 +227,11 @@ void run(const std::vector<std::string>& people) {
     }
     std::printf("from a start that is off by 60 degrees and 0.5 m, of so many tries\n");
     for (const auto& [kind, s] : converged)
-        std::printf("  %-8s of %d starts: plain ICP %d, point to plane %d; of %d pairs: features (128) "
-                    "%d, (12) %d; left %.2f deg %.1f mm\n",
-                    kind.c_str(), s.starts, s.points, s.planes, s.tries, s.features, s.features_simple,
-                    s.turn_deg / std::max(1, s.features), s.shift_mm / std::max(1, s.features));
+        std::printf(
+            "  %-8s of %d starts: plain ICP %d, point to plane %d; of %d pairs: features (128) "
+            "%d, (12) %d; left %.2f deg %.1f mm\n",
+            kind.c_str(), s.starts, s.points, s.planes, s.tries, s.features, s.features_simple,
+            s.turn_deg / std::max(1, s.features), s.shift_mm / std::max(1, s.features));
 }
 
 } // namespace
