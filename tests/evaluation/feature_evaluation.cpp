@@ -150,7 +150,7 @@ Eigen::Isometry3d wrong_start(const Eigen::Isometry3d& right, const Vec3d& middl
 }
 
 struct Success {
-    int tries = 0, starts = 0, features = 0, features_simple = 0, planes = 0, points = 0;
+    int tries = 0, features = 0, features_simple = 0, planes = 0, points = 0;
     double turn_deg = 0, shift_mm = 0; ///< sums of what is left after features
 };
 
@@ -230,7 +230,7 @@ void run(const std::vector<std::string>& people) {
         std::printf(
             "  %-8s of %d starts: plain ICP %d, point to plane %d; of %d pairs: features (128) "
             "%d, (12) %d; left %.2f deg %.1f mm\n",
-            kind.c_str(), s.starts, s.points, s.planes, s.tries, s.features, s.features_simple,
+            kind.c_str(), s.tries, s.points, s.planes, s.tries, s.features, s.features_simple,
             s.turn_deg / std::max(1, s.features), s.shift_mm / std::max(1, s.features));
 }
 
