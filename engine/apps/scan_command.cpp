@@ -1,6 +1,8 @@
 // toile scan: one coloured surface of a person or thing from cameras' pictures.
+#include "apps/camera_set.h"
 #include "apps/commands.h"
 #include "apps/plugin_limits.h"
+#include "apps/rig_calibration.h"
 #include "apps/scan_output.h"
 #include "assets/files.h"
 #include "core/error.h"
@@ -20,50 +22,11 @@ using Seconds = std::chrono::duration<double>;
 
 struct ScanCommand {
     std::vector<std::string> sources, settings;
-    std::string method;
+    std::string method, calibrate;
+    double ball_radius_m = 0.0;
+    fs::path extrinsics; ///< where the cameras stand
     std::uint32_t frames = 0;
     ScanOutput output;
-};
-
-/// All cameras of all sources, and their frames in step.
-class Cameras {
-  public:
-    Cameras(const std::vector<std::string>& uris, host::Registry& registry,
-            host::Services& services, const toile_limits& limits, host::Job& job)
-        : job_(job) {
-        for (const std::string& uri : uris) {
-            sources_.push_back(
-                std::make_unique<pipeline::SensorSource>(uri, registry, services, limits, job));
-            const auto& streams = sources_.back()->streams();
-            streams_.insert(streams_.end(), streams.begin(), streams.end());
-        }
-    }
-
-    [[nodiscard]] const std::vector<pipeline::SensorStream>& streams() const { return streams_; }
-
-    /// One frame of each camera; false at the end of one of them.
-    bool next(std::vector<pipeline::SensorFrame>& out) {
-        out.resize(streams_.size());
-        std::size_t at = 0;
-        for (const auto& source : sources_)
-            for (std::uint32_t c = 0; c < source->streams().size(); ++c)
-                if (!wait(*source, c, out[at++])) return false;
-        return true;
-    }
-
-  private:
-    bool wait(pipeline::SensorSource& source, std::uint32_t stream, pipeline::SensorFrame& out) {
-        constexpr int kMostWaits = 5000; // of a millisecond: a live sensor without a new picture
-        for (int waits = 0; !source.next(stream, out); ++waits) {
-            if (source.ended(stream) || waits > kMostWaits || job_.cancelled()) return false;
-            usleep(1000);
-        }
-        return true;
-    }
-
-    host::Job& job_;
-    std::vector<std::unique_ptr<pipeline::SensorSource>> sources_;
-    std::vector<pipeline::SensorStream> streams_;
 };
 
 void set(pipeline::Scanning& scanning, const std::string& setting) {
@@ -77,7 +40,7 @@ void set(pipeline::Scanning& scanning, const std::string& setting) {
 }
 
 /// Until the sources end, enough frames are there, or somebody wants it to stop.
-std::size_t feed_all(Cameras& cameras, pipeline::Scanning& scanning, std::uint32_t most) {
+std::size_t feed_all(CameraSet& cameras, pipeline::Scanning& scanning, std::uint32_t most) {
     const bool terminal = isatty(STDERR_FILENO) != 0;
     std::vector<pipeline::SensorFrame> instant;
     std::size_t count = 0;
@@ -90,7 +53,28 @@ std::size_t feed_all(Cameras& cameras, pipeline::Scanning& scanning, std::uint32
     return count;
 }
 
+/// toile scan --calibrate: writes where the cameras stand.
+void calibrate(const ScanCommand& command, const GlobalOptions& global) {
+    const fs::path& out = command.output.file;
+    if (out.extension() != ".json")
+        throw UsageError("scan --calibrate --out '" + out.string() + "': name a .json file");
+    if (!out.parent_path().empty() && !fs::is_directory(out.parent_path()))
+        throw UsageError("scan --out '" + out.string() + "': its folder does not exist");
+    host::Services services(global.threads);
+    host::Registry registry(services, registry_options(global));
+    const toile_limits limits = limits_of(global, services, kScannedPerson);
+    host::catch_interrupts();
+    host::Job feeding({}, &host::interrupt_flag());
+    CameraSet cameras(command.sources, registry, services, limits, feeding);
+    const imaging::RigFile rig =
+        calibrate_rig(cameras, {command.calibrate, command.ball_radius_m, command.frames}, registry,
+                      services, limits);
+    save_rig(rig, out);
+    std::cout << rig.report.dump(2) << "\nwrote " << out.string() << "\n";
+}
+
 void scan(const ScanCommand& command, const GlobalOptions& global) {
+    if (!command.calibrate.empty()) return calibrate(command, global);
     check(command.output);
     const auto start = std::chrono::steady_clock::now();
     host::Services services(global.threads);
@@ -102,7 +86,8 @@ void scan(const ScanCommand& command, const GlobalOptions& global) {
         set(scanning, setting);
     host::catch_interrupts();
     host::Job feeding({}, &host::interrupt_flag());
-    Cameras cameras(command.sources, registry, services, limits, feeding);
+    CameraSet cameras(command.sources, registry, services, limits, feeding);
+    if (!command.extrinsics.empty()) cameras.place(command.extrinsics);
     scanning.begin(cameras.streams());
     const std::size_t count = feed_all(cameras, scanning, command.frames);
     if (count == 0) throw Error(command.sources.front() + ": gave no frame");
@@ -140,10 +125,27 @@ void add_scan_commands(CLI::App& app, const GlobalOptions& global) {
     command->add_option("--set", options->settings, "A parameter of the method, once for each")
         ->type_name("NAME=NUMBER");
     command->add_option("--frames", options->frames, "Use the first so many frames only");
+    command
+        ->add_option("--calibrate", options->calibrate,
+                     "Instead of a surface, find out where the cameras stand to each other: from "
+                     "a ball that is moved about, or from a person whom all see")
+        ->check(CLI::IsMember({"ball", "person"}));
+    command
+        ->add_option("--ball-radius", options->ball_radius_m,
+                     "Metres, if you know it; else it is found out")
+        ->check(CLI::Range(0.02, 0.5));
+    command
+        ->add_option("--extrinsics", options->extrinsics,
+                     "Where the cameras stand, as --calibrate wrote it")
+        ->check(CLI::ExistingFile)
+        ->type_name("FILE");
     add_scan_output(*command, options->output);
-    command->footer("Example: toile scan --source capture:turn --out anna.ply --triangles 50000 "
-                    "--picture anna.png\n"
-                    "         toile scan --source openni2: --frames 300 --out anna.glb --rig");
+    command->footer(
+        "Example: toile scan --source capture:turn --out anna.ply --triangles 50000 "
+        "--picture anna.png\n"
+        "         toile scan --source openni2: --frames 300 --out anna.glb --rig\n"
+        "         toile scan --source capture:ball --calibrate ball --out rig.json\n"
+        "         toile scan --source capture:four --extrinsics rig.json --out anna.ply");
     command->callback([options, &global] { scan(*options, global); });
 }
 

@@ -18,14 +18,20 @@ constexpr double kFocal = 300.0;
 constexpr float kDistance_m = 2.0f, kEye_m = 0.9f;
 constexpr float kClose_m = 0.03f;
 
-/// Upright, 2 m before the figure.
-toile_stream camera() {
+/// Upright, 2 m before the figure, or `yaw_rad` around it.
+toile_stream camera(double yaw_rad = 0.0, std::uint32_t number = 0) {
     auto out = sized<toile_stream>();
     out.depth = {kWidth, kHeight, kFocal, kFocal, 0.5 * (kWidth - 1), 0.5 * (kHeight - 1), {}};
     for (const int i : {0, 5, 10, 15})
         out.color_from_depth[i] = out.world_from_camera[i] = 1.0;
+    const double c = std::cos(yaw_rad), sine = std::sin(yaw_rad);
+    out.world_from_camera[0] = out.world_from_camera[10] = c;
+    out.world_from_camera[8] = sine;
+    out.world_from_camera[2] = -sine;
+    out.world_from_camera[12] = kDistance_m * sine;
     out.world_from_camera[13] = kEye_m;
-    out.world_from_camera[14] = kDistance_m;
+    out.world_from_camera[14] = kDistance_m * c;
+    out.camera = number;
     out.has_world = out.registered = 1;
     out.frame_period_s = 1.0 / 30.0;
     return out;
@@ -106,9 +112,7 @@ SunkScan scanned(const PluginPtr& plugin, std::uint32_t threads) {
 }
 
 /// The figure in its first pose, all around: every part of it is near the scan, and the reverse.
-void finds_the_turning_figure(const PluginPtr& plugin) {
-    const Bench bench(plugin);
-    const SunkScan scan = scanned(plugin, 1);
+void check_figure(const Bench& bench, const SunkScan& scan) {
     bench.rule(scan.mesh.triangles.size() > 500, "finish: a surface of hardly any triangles");
     bench.rule(scan.mesh.normals.empty() || scan.mesh.normals.size() == scan.mesh.positions.size(),
                "finish: not a normal for each vertex");
@@ -136,6 +140,38 @@ void finds_the_turning_figure(const PluginPtr& plugin) {
     }
     // Ends of capsules that lie within others are on no surface.
     bench.rule(5 * near > 3 * figure.positions().size(), "finish: parts of the figure are missing");
+}
+
+void finds_the_turning_figure(const PluginPtr& plugin) {
+    const Bench bench(plugin);
+    check_figure(bench, scanned(plugin, 1));
+}
+
+/// One before and one behind, or a plain refusal at begin. The second one misses an instant.
+void takes_two_cameras_or_refuses(const PluginPtr& plugin) {
+    Bench bench(plugin);
+    bench.activate();
+    const auto& table = bench.table<toile_scanner>();
+    const std::array streams = {camera(0.0, 3), camera(std::numbers::pi, 8)};
+    const toile_status begun = bench.any("begin", [&](auto* i) {
+        return table.begin(i, streams.data(), static_cast<std::uint32_t>(streams.size()));
+    });
+    if (begun == TOILE_E_UNSUPPORTED) return;
+    bench.rule(begun >= 0, "begin: refuses two cameras that know where they stand, and not as "
+                           "unsupported");
+    const CapsuleFigure figure;
+    for (std::uint32_t k = 0; k < kFrames; ++k) {
+        const double turn = 2.0 * std::numbers::pi * k / kFrames;
+        const std::array pictures = {seen(figure, turn), seen(figure, turn - std::numbers::pi)};
+        std::array<toile_frame, 2> frames = {frame_of(pictures[0], k), frame_of(pictures[1], k)};
+        frames[0].camera = 3;
+        frames[1].camera = 8;
+        bench.ok("feed", [&](auto* i) { return table.feed(i, frames.data(), k == 5 ? 1 : 2); });
+    }
+    ScanSink sink(500'000, 1'000'000);
+    Job job;
+    bench.ok("finish", [&](auto* i) { return table.finish(i, sink.handle(), job.handle()); });
+    check_figure(bench, sink.take());
 }
 
 void gives_the_same_twice(const PluginPtr& plugin) {
@@ -195,6 +231,8 @@ void refuses_wrong_calls(const PluginPtr& plugin) {
 constexpr ContractCase kCases[] = {
     {TOILE_SCANNER, "scanner: a turning figure comes out whole, as it stood first",
      &finds_the_turning_figure},
+    {TOILE_SCANNER, "scanner: two cameras see a figure whole, or are refused as unsupported",
+     &takes_two_cameras_or_refuses},
     {TOILE_SCANNER, "scanner: two runs and any number of threads give the same bytes",
      &gives_the_same_twice},
     {TOILE_SCANNER, "scanner: broken pictures are survived, and refused with a text",

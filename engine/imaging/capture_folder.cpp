@@ -2,6 +2,7 @@
 
 #include "core/bytes.h"
 #include "core/json.h"
+#include "imaging/rig_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -46,18 +47,9 @@ void read_intrinsics(const fs::path& file, CaptureCamera& camera) {
 Eigen::Isometry3d read_extrinsics(const fs::path& file) {
     const nlohmann::json json = parse_json_file(file, 1u << 20);
     JsonObject root(json, file.string());
-    const std::vector<double> numbers = root.numbers("world_from_camera", 16);
+    const Eigen::Isometry3d out = read_rigid_motion(root, "world_from_camera");
     root.finish();
-    const Eigen::Matrix4d m = Eigen::Map<const Eigen::Matrix4d>(numbers.data());
-    const Eigen::Matrix3d R = m.topLeftCorner<3, 3>();
-    const bool rigid = (R * R.transpose()).isApprox(Eigen::Matrix3d::Identity(), 1e-4) &&
-                       R.determinant() > 0.0 && m.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1));
-    if (!rigid)
-        throw root.error("world_from_camera", "is not a rigid motion (16 numbers, column-major)");
-    Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-    result.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
-    result.translation() = m.topRightCorner<3, 1>();
-    return result;
+    return out;
 }
 
 double parse_number(std::string_view text, const std::string& where) {

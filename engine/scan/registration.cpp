@@ -1,4 +1,4 @@
-#include "scan/registration.h"
+#include "scan/normal_equations.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -7,92 +7,37 @@
 namespace toile::scan {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-/// A small motion: rotation vector, then translation.
-Pose motion(const Vector6& step) {
-    Pose out = Pose::Identity();
-    const Vec3d turn = step.head<3>();
-    const double angle = turn.norm();
-    if (angle > 1e-12) out.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-    out.translation() = step.tail<3>();
-    return out;
-}
-
-/// `move` after `pose`, kept rigid: rounding would double with every prediction from a prediction.
-Pose moved(const Pose& move, const Pose& pose) {
-    Pose out = move * pose;
-    out.linear() = Eigen::Quaterniond(out.linear()).normalized().toRotationMatrix();
-    return out;
-}
-
-/// Sums of one system, of one range of rows.
-struct Sums {
-    Matrix6 h = Matrix6::Zero();
-    Vector6 g = Vector6::Zero();
-    double square = 0.0, weight = 0.0;
-    std::size_t pairs = 0, readings = 0;
-
-    /// Residual normal . (motion(q) - target), Huber-weighted.
-    void add(const Vec3f& q, const Vec3f& normal, double residual, double weight_at, double huber) {
-        const double w = weight_at * std::min(1.0, huber / std::max(1e-12, std::abs(residual)));
-        Vector6 row;
-        row << q.cross(normal).cast<double>(), normal.cast<double>();
-        h += w * row * row.transpose();
-        g += w * residual * row;
-        square += w * residual * residual;
-        weight += w;
-        ++pairs;
-    }
-    Sums& operator+=(const Sums& b) {
-        h += b.h, g += b.g, square += b.square, weight += b.weight;
-        pairs += b.pairs, readings += b.readings;
-        return *this;
-    }
-};
-
-/// Least squares step about a point amid the readings; directions that nothing holds stay zero.
-Vector6 solved(const Matrix6& h, const Vector6& g) {
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(h);
-    const double least = 1e-6 * eigen.eigenvalues().maxCoeff();
-    Vector6 out = Vector6::Zero();
-    for (int k = 0; k < 6; ++k)
-        if (eigen.eigenvalues()[k] > least && eigen.eigenvalues()[k] > 0.0)
-            out -= eigen.eigenvectors().col(k) *
-                   (eigen.eigenvectors().col(k).dot(g) / eigen.eigenvalues()[k]);
-    return out;
-}
-
-/// Gauss-Newton over a view's readings; pair(p, n, sums) adds the pair of a reading, if any. `p`
-/// and `n` in the scan's coordinates, `about` is subtracted from what is rotated.
+/// Gauss-Newton over the readings of views whose cameras are fixed to each other; pair(k, p, n,
+/// ...) adds the pair of a reading of view k, if any. `p` and `n` in the scan's coordinates.
 template <class Pair>
-Registered descend(const DepthView& view, const Pose& start, const RegistrationOptions& options,
-                   const RowLoop& rows, const Pair& pair) {
+Registered descend(std::span<const RigView> views, const Pose& start,
+                   const RegistrationOptions& options, const RowLoop& rows, const Pair& pair) {
     constexpr std::uint32_t kGrain = 8;
     Registered out;
     out.pose = start;
-    const auto lines =
-        static_cast<std::uint32_t>((view.camera.height + options.stride - 1) / options.stride);
-    std::vector<Sums> parts((lines + kGrain - 1) / kGrain);
     for (int round = 0; round < options.rounds; ++round) {
-        const Eigen::Isometry3f pose = out.pose.cast<float>();
-        std::fill(parts.begin(), parts.end(), Sums{});
-        rows(lines, kGrain, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t line = begin; line < end; ++line)
-                for (int x = 0; x < view.camera.width; x += options.stride) {
-                    const int y = static_cast<int>(line) * options.stride;
-                    const std::size_t i = view.camera.at(x, y);
-                    if (view.depth[i] == 0.0f || view.weight[i] <= 0.0f) continue;
-                    Sums& sums = parts[line / kGrain];
-                    ++sums.readings;
-                    pair(pose * view.point(x, y), pose.linear() * view.normals[i], view.weight[i],
-                         round, sums);
-                }
-        });
         Sums all;
-        for (const Sums& part : parts)
-            all += part;
+        for (std::size_t k = 0; k < views.size(); ++k) {
+            const DepthView& view = *views[k].view;
+            const Eigen::Isometry3f pose = (out.pose * views[k].rig_from_camera).cast<float>();
+            const auto lines = static_cast<std::uint32_t>(
+                (view.camera.height + options.stride - 1) / options.stride);
+            std::vector<Sums> parts((lines + kGrain - 1) / kGrain);
+            rows(lines, kGrain, [&](std::uint32_t begin, std::uint32_t end) {
+                for (std::uint32_t line = begin; line < end; ++line)
+                    for (int x = 0; x < view.camera.width; x += options.stride) {
+                        const int y = static_cast<int>(line) * options.stride;
+                        const std::size_t i = view.camera.at(x, y);
+                        if (view.depth[i] == 0.0f || view.weight[i] <= 0.0f) continue;
+                        Sums& sums = parts[line / kGrain];
+                        ++sums.readings;
+                        pair(k, pose * view.point(x, y), pose.linear() * view.normals[i],
+                             view.weight[i], round, sums);
+                    }
+            });
+            for (const Sums& part : parts)
+                all += part;
+        }
         if (all.pairs < 50) return out;
         out.rms_m = std::sqrt(all.square / all.weight);
         out.overlap = static_cast<double>(all.pairs) / static_cast<double>(all.readings);
@@ -105,32 +50,43 @@ Registered descend(const DepthView& view, const Pose& start, const RegistrationO
 
 } // namespace
 
+Registered register_rig(std::span<const RigView> views, std::span<const SurfaceMap> maps,
+                        const Pose& start, const RegistrationOptions& options,
+                        const RowLoop& rows) {
+    std::vector<Eigen::Isometry3f> camera_from_scan;
+    for (const RigView& view : views)
+        camera_from_scan.push_back((start * view.rig_from_camera).inverse().cast<float>());
+    const float least_cosine = std::cos(options.angle);
+    return descend(
+        views, start, options, rows,
+        [&](std::size_t k, const Vec3f& p, const Vec3f& n, float weight, int round, Sums& sums) {
+            // The pairs become closer as the pose becomes better.
+            const float reach =
+                options.reach_m * std::max(0.25f, 1.0f - 0.12f * static_cast<float>(round));
+            const SurfaceMap& map = maps[k];
+            int x = 0, y = 0;
+            if (!map.camera.pixel(camera_from_scan[k] * p, x, y)) return;
+            const Vec3f& q = map.points[map.camera.at(x, y)];
+            const Vec3f& m = map.normals[map.camera.at(x, y)];
+            if (!(q.x() == q.x()) || (p - q).squaredNorm() > reach * reach ||
+                m.dot(n) < least_cosine)
+                return;
+            sums.add(p, m, m.dot(p - q), weight, 0.25 * reach);
+        });
+}
+
 Registered register_view(const DepthView& view, const SurfaceMap& map, const Pose& start,
                          const RegistrationOptions& options, const RowLoop& rows) {
-    const Eigen::Isometry3f camera_from_scan = start.inverse().cast<float>();
-    const float least_cosine = std::cos(options.angle);
-    return descend(view, start, options, rows,
-                   [&](const Vec3f& p, const Vec3f& n, float weight, int round, Sums& sums) {
-                       // The pairs become closer as the pose becomes better.
-                       const float reach =
-                           options.reach_m *
-                           std::max(0.25f, 1.0f - 0.12f * static_cast<float>(round));
-                       int x = 0, y = 0;
-                       if (!map.camera.pixel(camera_from_scan * p, x, y)) return;
-                       const Vec3f& q = map.points[map.camera.at(x, y)];
-                       const Vec3f& m = map.normals[map.camera.at(x, y)];
-                       if (!(q.x() == q.x()) || (p - q).squaredNorm() > reach * reach ||
-                           m.dot(n) < least_cosine)
-                           return;
-                       sums.add(p, m, m.dot(p - q), weight, 0.25 * reach);
-                   });
+    const RigView alone{&view, Pose::Identity()};
+    return register_rig({&alone, 1}, {&map, 1}, start, options, rows);
 }
 
 Registered settle_view(const DepthView& view, const Volume& volume, const Pose& start,
                        const RegistrationOptions& options, const RowLoop& rows) {
     const float least_cosine = std::cos(options.angle);
-    return descend(view, start, options, rows,
-                   [&](const Vec3f& p, const Vec3f& n, float weight, int, Sums& sums) {
+    const RigView alone{&view, Pose::Identity()};
+    return descend({&alone, 1}, start, options, rows,
+                   [&](std::size_t, const Vec3f& p, const Vec3f& n, float weight, int, Sums& sums) {
                        float distance = 0.0f;
                        Vec3f slope;
                        if (!volume.sample(p, distance, slope) || slope.dot(n) < least_cosine ||
@@ -170,6 +126,15 @@ Sums pair_sums(const DepthView& from, const DepthView& to, const Pose& to_from, 
 
 } // namespace
 
+Sums mutual_sums(const DepthView& a, const DepthView& b, const Pose& scan_a, const Pose& scan_b,
+                 const JointOptions& options) {
+    const Pose b_from_a = scan_b.inverse() * scan_a;
+    Sums sums = pair_sums(a, b, b_from_a, scan_b, options);
+    Sums other = pair_sums(b, a, b_from_a.inverse(), scan_a, options);
+    other.g = -other.g; // there the second view's readings move
+    return sums += other;
+}
+
 double register_jointly(std::span<const DepthView> views, std::span<const ViewPair> pairs,
                         const JointOptions& options, std::vector<Pose>& poses,
                         const RowLoop& rows) {
@@ -181,12 +146,7 @@ double register_jointly(std::span<const DepthView> views, std::span<const ViewPa
              [&](std::uint32_t begin, std::uint32_t end) {
                  for (std::uint32_t k = begin; k < end; ++k) {
                      const auto [a, b] = pairs[k];
-                     const Pose b_from_a = poses[b].inverse() * poses[a];
-                     sums[k] = pair_sums(views[a], views[b], b_from_a, poses[b], options);
-                     Sums other =
-                         pair_sums(views[b], views[a], b_from_a.inverse(), poses[a], options);
-                     other.g = -other.g; // there the second view's readings move
-                     sums[k] += other;
+                     sums[k] = mutual_sums(views[a], views[b], poses[a], poses[b], options);
                  }
              });
         Eigen::MatrixXd h = Eigen::MatrixXd::Zero(n, n);

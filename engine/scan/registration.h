@@ -24,6 +24,18 @@ struct Registered {
                                        const Pose& start, const RegistrationOptions& options,
                                        const RowLoop& rows);
 
+/// A view, and where its camera is fixed among others.
+struct RigView {
+    const DepthView* view = nullptr;
+    Pose rig_from_camera = Pose::Identity();
+};
+
+/// Views of one instant, each against its own map, all moved as one: `start` and the result are the
+/// scan from the rig.
+[[nodiscard]] Registered register_rig(std::span<const RigView> views,
+                                      std::span<const SurfaceMap> maps, const Pose& start,
+                                      const RegistrationOptions& options, const RowLoop& rows);
+
 /// One view against the distances of the volume itself: for small corrections.
 [[nodiscard]] Registered settle_view(const DepthView& view, const Volume& volume, const Pose& start,
                                      const RegistrationOptions& options, const RowLoop& rows);

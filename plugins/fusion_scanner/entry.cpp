@@ -1,4 +1,4 @@
-// Kind toile.scanner/1: one camera, one rigid subject, places not known.
+// Kind toile.scanner/1: one rigid subject; one camera, or several that know where they stand.
 #include "boundary/stream_camera.h"
 #include "core/error.h"
 #include "fusion_scanner/fusion_session.h"
@@ -8,6 +8,7 @@
 #include "sdk/thread_pool.h"
 #include "sdk/views.h"
 
+#include <algorithm>
 #include <memory>
 
 namespace {
@@ -16,12 +17,12 @@ namespace sdk = toile::sdk;
 namespace fusion = toile::fusion_scanner;
 using toile::scan::Rgba8;
 
-constexpr std::uint32_t kMostFrames = 1000;
+constexpr std::uint32_t kMostFrames = 1000, kMostCameras = 16;
 
 class FusionScanner {
   public:
     static constexpr sdk::Info info{.id = "toile.fusion_scanner",
-                                    .name = "A rigid subject from one camera, by fusion",
+                                    .name = "A rigid subject, by fusion",
                                     .version = "0.1.0",
                                     .vendor = "Toile"};
     using Kinds = sdk::Kinds<sdk::Scanner>;
@@ -48,6 +49,12 @@ class FusionScanner {
                        "Rounds of putting back what smoothing takes off bends", 0, 5, 2},
         sdk::Parameter{"voxel_m", TOILE_PARAMETER_REAL, "m", "Detail of the surface", 0.003, 0.02,
                        0.005},
+        sdk::Parameter{"camera_shift_m", TOILE_PARAMETER_REAL, "m",
+                       "How far several cameras may be off where they are said to stand; 0: they "
+                       "are believed",
+                       0, 0.1, 0.003},
+        sdk::Parameter{"camera_turn_rad", TOILE_PARAMETER_REAL, "rad",
+                       "How far they may be turned from there", 0, 0.1, 0.003},
     };
     double& parameter(std::size_t index) { return values_.at(index); }
 
@@ -58,38 +65,35 @@ class FusionScanner {
 
     void begin(const sdk::SizedArray<const toile_stream>& streams) {
         session_.reset();
-        if (streams.size() > 1)
-            throw sdk::Failure(TOILE_E_UNSUPPORTED, "fusion takes one camera; " +
+        cameras_.clear();
+        if (streams.size() > kMostCameras)
+            throw sdk::Failure(TOILE_E_UNSUPPORTED, "fusion takes at most 16 cameras; " +
                                                         std::to_string(streams.size()) +
                                                         " were named");
         try {
+            std::vector<fusion::SessionCamera> cameras;
+            for (std::uint32_t c = 0; c < streams.size(); ++c) {
+                cameras.push_back(camera_of(streams[c]));
+                cameras_.push_back({streams[c].camera,
+                                    std::size_t{streams[c].depth.width} * streams[c].depth.height});
+            }
             session_ =
-                std::make_unique<fusion::FusionSession>(camera_of(streams[0]), options(), rows());
+                std::make_unique<fusion::FusionSession>(std::move(cameras), options(), rows());
         } catch (const toile::Error& e) {
             throw sdk::bad_argument(e.what());
         }
-        camera_ = streams[0].camera;
-        pixels_ = std::size_t{streams[0].depth.width} * streams[0].depth.height;
         fed_ = 0;
     }
 
     void feed(const sdk::SizedArray<const toile_frame>& frames) {
         if (!session_) throw sdk::bad_argument("feed: called before begin");
-        for (std::uint32_t i = 0; i < frames.size(); ++i) {
-            const toile_frame& frame = frames[i];
-            if (frame.camera != camera_)
-                throw sdk::bad_argument("frames: a camera that was not announced");
-            if (fed_++ >= kMostFrames)
-                throw sdk::Failure(TOILE_E_CAPACITY, "more than 1000 frames: take fewer a second");
-            const auto depth = sdk::span_of<float>(frame.depth_m, "frame.depth_m", pixels_);
-            const auto color = sdk::span_of<Rgba8>(frame.color, "frame.color");
-            if (!color.empty() && color.size() != pixels_)
-                throw sdk::bad_argument("frame.color: not of the depth picture's size");
-            try {
-                session_->add(depth, color);
-            } catch (const toile::Error& e) {
-                throw sdk::Failure(TOILE_E_NUMERIC, e.what());
-            }
+        std::vector<fusion::SessionPicture> instant;
+        for (std::uint32_t i = 0; i < frames.size(); ++i)
+            instant.push_back(picture_of(frames[i]));
+        try {
+            session_->add(instant);
+        } catch (const toile::Error& e) {
+            throw sdk::Failure(TOILE_E_NUMERIC, e.what());
         }
     }
 
@@ -108,6 +112,28 @@ class FusionScanner {
     }
 
   private:
+    struct Camera {
+        std::uint32_t number;
+        std::size_t pixels;
+    };
+
+    fusion::SessionPicture picture_of(const toile_frame& frame) {
+        const auto at = std::find_if(cameras_.begin(), cameras_.end(), [&](const Camera& camera) {
+            return camera.number == frame.camera;
+        });
+        if (at == cameras_.end())
+            throw sdk::bad_argument("frames: a camera that was not announced");
+        if (fed_++ >= kMostFrames)
+            throw sdk::Failure(TOILE_E_CAPACITY, "more than 1000 frames: take fewer a second");
+        fusion::SessionPicture out;
+        out.camera = static_cast<std::size_t>(at - cameras_.begin());
+        out.depth = sdk::span_of<float>(frame.depth_m, "frame.depth_m", at->pixels);
+        out.color = sdk::span_of<Rgba8>(frame.color, "frame.color");
+        if (!out.color.empty() && out.color.size() != at->pixels)
+            throw sdk::bad_argument("frame.color: not of the depth picture's size");
+        return out;
+    }
+
     static void check(toile_status status) {
         if (status < 0) throw sdk::Failure(status, "the sink refused the surface");
     }
@@ -149,6 +175,7 @@ class FusionScanner {
         out.fusion.refine_jointly = values_[6] != 0.0;
         out.fusion.bias_rounds = static_cast<int>(values_[7]);
         out.fusion.voxel_m = static_cast<float>(values_[8]);
+        out.cameras = {values_[10], values_[9]};
         return out;
     }
 
@@ -161,8 +188,8 @@ class FusionScanner {
     sdk::ThreadPool pool_;
     std::array<double, parameters.size()> values_{};
     std::unique_ptr<fusion::FusionSession> session_;
-    std::uint32_t camera_ = 0, fed_ = 0;
-    std::size_t pixels_ = 0;
+    std::vector<Camera> cameras_;
+    std::uint32_t fed_ = 0;
 };
 
 } // namespace

@@ -1,7 +1,8 @@
-// Frames of one camera to the surface of the rigid subject that it goes around, or that turns.
+// Frames to the surface of a rigid subject: of one camera that goes around it, or before which it
+// turns; or of several that are fixed to each other and know where they stand.
 #pragma once
 
-#include "scan/fusion.h"
+#include "scan/rig_fusion.h"
 
 #include <deque>
 #include <nlohmann/json.hpp>
@@ -11,8 +12,9 @@ namespace toile::fusion_scanner {
 struct SessionOptions {
     scan::FilterOptions filter;
     scan::FusionOptions fusion;
-    bool choose_radius = true; ///< rougher readings are smoothed more widely
-    int averaged_frames = 1;   ///< of so many frames in a row one picture is made
+    bool choose_radius = true;   ///< rougher readings are smoothed more widely
+    int averaged_frames = 1;     ///< of so many frames in a row one picture is made
+    scan::CameraFreedom cameras; ///< how far several are corrected by what they see
 };
 
 struct SessionCamera {
@@ -26,27 +28,44 @@ struct SessionResult {
     nlohmann::ordered_json report;
 };
 
+/// What one camera gives at one instant.
+struct SessionPicture {
+    std::size_t camera = 0;
+    std::span<const float> depth;       ///< (pixels) metres, NaN or 0 where unknown
+    std::span<const scan::Rgba8> color; ///< (pixels) or empty
+};
+
 /// \throw Error wherever nothing can be made of what was fed, saying why
 class FusionSession {
   public:
-    FusionSession(SessionCamera camera, const SessionOptions& options, RowLoop rows);
+    FusionSession(std::vector<SessionCamera> cameras, const SessionOptions& options, RowLoop rows);
 
-    /// `depth` (pixels) metres, NaN or 0 where unknown; `color` (pixels) or empty.
-    void add(std::span<const float> depth, std::span<const scan::Rgba8> color);
+    /// Pictures of one instant.
+    void add(std::span<const SessionPicture> instant);
     /// `progress(share)` may throw to stop.
     [[nodiscard]] SessionResult finish(const std::function<void(double)>& progress);
 
   private:
-    void use(std::span<const float> depth, std::span<const scan::Rgba8> color);
-    [[nodiscard]] Vec3f up() const;
+    struct Seen {
+        scan::CameraView view;
+        std::optional<geometry::Plane> floor; ///< in the camera's coordinates
+    };
+    [[nodiscard]] std::optional<Seen> use(const SessionPicture& picture);
+    void keep(std::vector<Seen> instant);
+    [[nodiscard]] Vec3f up(std::size_t camera) const;
+    [[nodiscard]] bool several() const { return cameras_.size() > 1; }
     [[nodiscard]] Eigen::Isometry3d upright(const geometry::TriangleMesh& mesh) const;
+    [[nodiscard]] SessionResult finish_one(const std::function<void(double)>& progress);
+    [[nodiscard]] SessionResult finish_rig(const std::function<void(double)>& progress);
 
-    SessionCamera camera_;
+    std::vector<SessionCamera> cameras_;
     SessionOptions options_;
     RowLoop rows_;
-    std::unique_ptr<scan::RigidFusion> fusion_; ///< once the first frame shows something
-    std::vector<std::vector<float>> waiting_;   ///< to be averaged
-    std::optional<geometry::Plane> floor_;      ///< in the first camera's coordinates
+    bool begun_ = false;                                   ///< once a frame shows something
+    std::unique_ptr<scan::RigidFusion> fusion_;            ///< of one camera
+    std::unique_ptr<scan::RigFusion> rig_;                 ///< of several
+    std::vector<std::vector<std::vector<float>>> waiting_; ///< (cameras) to be averaged
+    std::optional<geometry::Plane> floor_; ///< in the first camera's coordinates; several: world
     std::size_t fed_ = 0, empty_ = 0;
     std::string trouble_; ///< of the last frame that showed nothing
 };

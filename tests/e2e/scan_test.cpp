@@ -211,7 +211,6 @@ TEST_F(ScanTest, RefusesWhatCannotBeDone) {
     refused({"--out", path("a.ply"), "--rig"}, 2, "only a .glb holds a skeleton");
     refused({"--out", path("a.glb"), "--motion", "x.bvh"}, 2, "needs --rig");
     refused({"--out", path("a.ply"), "--frames", "1"}, 1, "a single view shows one side only");
-    refused({"--out", path("a.ply"), "--source", "capture:" + path("turn")}, 1, "takes one camera");
     EXPECT_FALSE(fs::exists(path("a.ply")));
     write_text(*folder_ / "empty.json",
                R"({"schema": 1, "frames": 3, "people": [], "cameras": [{"name": "front"}]})");

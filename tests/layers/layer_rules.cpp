@@ -30,7 +30,7 @@ const std::map<std::string, Names> kArrows = {
     {"host", {"abi", "core"}},
     {"pipeline", {"host", "garment"}},
     {"render", {"assets"}},
-    {"apps", {"pipeline", "render"}},
+    {"apps", {"pipeline", "render", "scan"}},
 };
 
 // A plugin: the boundary, and the engine's algorithms up to garment.

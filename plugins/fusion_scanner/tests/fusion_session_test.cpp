@@ -30,25 +30,30 @@ std::string reason(FusionSession& session) {
 
 FusionSession session_of(SessionOptions options = {},
                          std::optional<Eigen::Isometry3d> place = std::nullopt) {
-    return {{test::small_depth_camera(), place}, options, serial_rows};
+    return {{{test::small_depth_camera(), place}}, options, serial_rows};
+}
+
+void add(FusionSession& session, const std::vector<float>& depth) {
+    const SessionPicture picture{0, depth, {}};
+    session.add({&picture, 1});
 }
 
 TEST(FusionSession, SaysWhyNothingCanBeMade) {
     FusionSession none = session_of(), empty = session_of(), one = session_of();
     EXPECT_THAT(reason(none), HasSubstr("no frame was fed"));
     const std::vector<float> nothing(32000, std::nanf(""));
-    empty.add(nothing, {});
-    empty.add(nothing, {});
+    add(empty, nothing);
+    add(empty, nothing);
     EXPECT_THAT(reason(empty), HasSubstr("nobody is in view in any of 2 frames"));
-    one.add(picture(0.0), {});
+    add(one, picture(0.0));
     EXPECT_THAT(reason(one), HasSubstr("a single view shows one side only"));
 }
 
 TEST(FusionSession, FramesWithoutTheSubjectArePassedOver) {
     FusionSession session = session_of();
-    session.add(std::vector<float>(32000, std::nanf("")), {});
+    add(session, std::vector<float>(32000, std::nanf("")));
     for (int k = 0; k < 4; ++k)
-        session.add(picture(0.15 * k), {});
+        add(session, picture(0.15 * k));
     const SessionResult result = session.finish([](double) {});
     EXPECT_EQ(result.report.at("frames"), 4);
     EXPECT_EQ(result.report.at("frames_without_subject"), 1);
@@ -58,8 +63,8 @@ TEST(FusionSession, StandsInTheWorldOfAKnownCameraElseUprightOnZero) {
     const Eigen::Isometry3d place = camera_around(0.7);
     FusionSession known = session_of({}, place), unknown = session_of();
     for (int k = 0; k < 4; ++k) {
-        known.add(picture(0.7 + 0.15 * k), {});
-        unknown.add(picture(0.7 + 0.15 * k), {});
+        add(known, picture(0.7 + 0.15 * k));
+        add(unknown, picture(0.7 + 0.15 * k));
     }
     const auto box = [](const SessionResult& result) {
         Eigen::AlignedBox3f out;
@@ -81,7 +86,7 @@ TEST(FusionSession, AveragedFramesHaveLessNoise) {
         options.averaged_frames = averaged;
         FusionSession session = session_of(options);
         for (int k = 0; k < 16; ++k) // four places, four frames at each
-            session.add(picture(0.15 * (k / 4), 0.01f, static_cast<std::uint64_t>(k) + 1), {});
+            add(session, picture(0.15 * (k / 4), 0.01f, static_cast<std::uint64_t>(k) + 1));
         return session.finish([](double) {}).report.at("readings_rms_m").get<double>();
     };
     EXPECT_LT(readings_rms(4), 0.65 * readings_rms(1));
@@ -91,7 +96,7 @@ TEST(FusionSession, RoughReadingsAreSmoothedMoreWidely) {
     const auto radius = [](float noise_m) {
         FusionSession session = session_of();
         for (int k = 0; k < 3; ++k)
-            session.add(picture(0.1 * k, noise_m, static_cast<std::uint64_t>(k) + 1), {});
+            add(session, picture(0.1 * k, noise_m, static_cast<std::uint64_t>(k) + 1));
         return session.finish([](double) {}).report.at("smoothing_radius").get<int>();
     };
     EXPECT_EQ(radius(0.001f), 3);
@@ -102,7 +107,7 @@ TEST(FusionSession, ProgressMayStopIt) {
     struct Stop {};
     FusionSession session = session_of();
     for (int k = 0; k < 3; ++k)
-        session.add(picture(0.15 * k), {});
+        add(session, picture(0.15 * k));
     EXPECT_THROW((void)session.finish([](double) { throw Stop(); }), Stop);
 }
 
