@@ -6,6 +6,8 @@
 #include "host/views.h"
 #include "pipeline/sensor_views.h"
 
+#include <cmath>
+
 namespace toile::pipeline {
 namespace {
 
@@ -70,8 +72,18 @@ PeopleSource::~PeopleSource() {
     });
 }
 
+void PeopleSource::rewind() noexcept {
+    sensor_.rewind();
+    const double period_s = stream_.frame_period_s > 0.0 ? stream_.frame_period_s : 1.0 / 30.0;
+    shift_ns_ = last_ns_ + std::llround(1e9 * period_s);
+    sequence_shift_ = last_sequence_ + 1;
+}
+
 bool PeopleSource::next(PeopleFrame& out) {
     if (!sensor_.next(0, pictures_)) return false;
+    out.taken_s = wall_seconds();
+    pictures_.timestamp_ns += shift_ns_;
+    pictures_.sequence += sequence_shift_;
     const toile_frame frame = frame_view(pictures_, 0);
     auto input = host::sized<toile_body_source_input>();
     input.frame_count = 1;
@@ -79,8 +91,8 @@ bool PeopleSource::next(PeopleFrame& out) {
     const double began = cpu_seconds();
     tracker_->call("feed", [&](toile_instance* i) { return table_->feed(i, &input); });
     time_.add(cpu_seconds() - began);
-    out.sequence = pictures_.sequence;
-    out.timestamp_ns = pictures_.timestamp_ns;
+    out.sequence = last_sequence_ = pictures_.sequence;
+    out.timestamp_ns = last_ns_ = pictures_.timestamp_ns;
     read_people(out);
     return true;
 }

@@ -25,6 +25,7 @@ struct PersonShape {
 struct PeopleFrame {
     std::uint32_t sequence = 0;
     std::int64_t timestamp_ns = 0;
+    double taken_s = 0.0; ///< wall_seconds when the sensor gave it, before it was tracked
     std::vector<BodyFrame> people;     ///< world, or the camera's frame when it has no place
     std::vector<std::uint64_t> shapes; ///< revision of each, of PeopleSource::shape; 0: none told
 };
@@ -57,6 +58,12 @@ class PeopleSource {
     [[nodiscard]] const SensorStream& stream() const { return stream_; }
     /// The pictures of the frame that `next` gave last.
     [[nodiscard]] const SensorFrame& pictures() const noexcept { return pictures_; }
+    /// The same to keep: swapped for what was in `out`.
+    void take_pictures(SensorFrame& out) noexcept { std::swap(out, pictures_); }
+    /// A recording begins again; its frames are numbered and timed on, for the tracker too.
+    void rewind() noexcept;
+    /// Timestamps are moved by so much from now on, as if the sensor's clock had been set.
+    void shift_clock(std::int64_t by_ns) noexcept { shift_ns_ += by_ns; }
     /// \throw std::out_of_range for a revision that no frame told
     [[nodiscard]] const PersonShape& shape(std::uint64_t revision) const {
         return shapes_.at(revision);
@@ -78,6 +85,10 @@ class PeopleSource {
     std::vector<JointArray> joints_;
     std::vector<toile_person> people_;
     DurationHistogram time_;
+    std::int64_t last_ns_ = 0;
+    std::uint32_t last_sequence_ = 0;
+    std::int64_t shift_ns_ = 0;
+    std::uint32_t sequence_shift_ = 0;
 };
 
 } // namespace toile::pipeline

@@ -29,7 +29,14 @@ class Display {
     [[nodiscard]] render::WindowInput take_input();
     void show();
 
+    /// Nothing can be drawn any more: make another one.
+    [[nodiscard]] bool lost();
+    /// As if it were; for tests of faults.
+    void lose();
+
   private:
+    [[nodiscard]] render::Context& context();
+
     std::unique_ptr<render::Window> window_;
     std::unique_ptr<render::Context> offscreen_;
     std::unique_ptr<render::Screen> screen_;
