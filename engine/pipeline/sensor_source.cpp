@@ -107,11 +107,6 @@ void SensorSource::describe_streams() {
     ended_.assign(count, false);
 }
 
-void SensorSource::rewind() noexcept {
-    instance_.reset();
-    std::fill(ended_.begin(), ended_.end(), false);
-}
-
 bool SensorSource::next(std::uint32_t stream, SensorFrame& out) {
     const SensorStream& described = streams_.at(stream);
     auto frame = host::sized<toile_frame>();

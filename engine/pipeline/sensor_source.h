@@ -61,8 +61,6 @@ class SensorSource {
     /// The next frame of a stream: true when there is one. False: none yet, or no more (`ended`).
     /// \throw Error when the sensor fails or its frame is not as described
     bool next(std::uint32_t stream, SensorFrame& out);
-    /// A recording begins again; frames are numbered and timed from its beginning.
-    void rewind() noexcept;
     [[nodiscard]] bool ended(std::uint32_t stream) const { return ended_.at(stream); }
 
     /// Is this a simulated sensor that tells the truth?

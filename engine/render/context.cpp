@@ -16,12 +16,6 @@ void Context::load(Loader loader) {
                     std::to_string(GLAD_VERSION_MAJOR(version)) + "." +
                     std::to_string(GLAD_VERSION_MINOR(version)) + ", 3.3 is needed");
     }
-    const Function robust = loader("glGetGraphicsResetStatusARB");
-    reset_status_ = reinterpret_cast<ResetStatus>(robust);
-}
-
-bool Context::lost() const {
-    return lost_ || (reset_status_ != nullptr && reset_status_() != GL_NO_ERROR);
 }
 
 std::string Context::describe() const {

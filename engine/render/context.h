@@ -19,11 +19,6 @@ class Context {
 
     /// The context's own table of entry points.
     [[nodiscard]] const GladGLContext& gl() const { return *gl_; }
-    /// A graphics processor that was reset or went away: what was made here works no more, all of
-    /// it must be made again on another context. Never true where the driver does not tell.
-    [[nodiscard]] bool lost() const;
-    /// As if it had been lost; for tests of faults.
-    void lose() { lost_ = true; }
     /// "OpenGL 3.3, llvmpipe (...)".
     [[nodiscard]] std::string describe() const;
 
@@ -35,10 +30,7 @@ class Context {
     void load(Loader loader);
 
   private:
-    using ResetStatus = unsigned int (*)();
     std::unique_ptr<GladGLContext> gl_;
-    ResetStatus reset_status_ = nullptr; ///< of robust contexts
-    bool lost_ = false;
 };
 
 /// Without any window system, on the CPU (OSMesa). \throw Error

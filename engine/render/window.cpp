@@ -205,4 +205,11 @@ void Window::show(Screen& screen) {
     glfwSwapBuffers(impl_->window_);
 }
 
+bool Window::lost() const {
+    const auto status =
+        reinterpret_cast<GLenum (*)()>(glfwGetProcAddress("glGetGraphicsResetStatusARB"));
+    return status != nullptr && glfwExtensionSupported("GL_ARB_robustness") == GLFW_TRUE &&
+           status() != GL_NO_ERROR;
+}
+
 } // namespace toile::render

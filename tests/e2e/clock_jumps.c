@@ -15,9 +15,11 @@ static long leap(void) {
 
 int clock_gettime(clockid_t clock, struct timespec* out) {
     static int (*real)(clockid_t, struct timespec*);
-    if (real == NULL) real = (int (*)(clockid_t, struct timespec*))dlsym(RTLD_NEXT, "clock_gettime");
+    if (real == NULL)
+        real = (int (*)(clockid_t, struct timespec*))dlsym(RTLD_NEXT, "clock_gettime");
     const int code = real(clock, out);
-    if (code == 0 && (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE)) out->tv_sec += leap();
+    if (code == 0 && (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE))
+        out->tv_sec += leap();
     return code;
 }
 

@@ -87,7 +87,6 @@ TEST_F(KioskFaults, AGarmentThatChangesOnDiskIsReadAgainAndABadOneRefused) {
     EXPECT_THAT(run.output, HasSubstr("status 0")) << "it went on and ended when told to";
 }
 
-
 // Five garments one after another: under each of them the plugin fails anew.
 TEST_F(KioskFaults, APluginThatFailsIsSwitchedOffAndClothesFollowTheSkin) {
     configure(R"("people": 1, "metrics": "kiosk.prom")");
@@ -97,9 +96,8 @@ TEST_F(KioskFaults, APluginThatFailsIsSwitchedOffAndClothesFollowTheSkin) {
     write("visit.json", steps + R"(, {"frame": 188, "picture": "dressed"}]})");
     for (const char* fault : {"errors", "throws", "not_finite"}) {
         fs::remove_all(folder_ / "plugins");
-        const auto run =
-            kiosk({"--frames", "190", "--script", at("visit.json"), "--out", at("out"), "--plugins",
-                   faulty_plugins(fault)});
+        const auto run = kiosk({"--frames", "190", "--script", at("visit.json"), "--out", at("out"),
+                                "--plugins", faulty_plugins(fault)});
         ASSERT_EQ(run.status, 0) << run.output;
         EXPECT_THAT(run.output, HasSubstr("Switched off: test.faulty_cloth")) << fault;
         const std::string metrics = text_of("kiosk.prom");
@@ -147,7 +145,8 @@ TEST_F(KioskFaults, NothingHangsOnTheSystemsClock) {
     configure(R"("people": 1, "metrics": "kiosk.prom")");
     write("visit.json", R"({"schema": 1, "steps": [{"frame": 20, "act": "agree"},
         {"frame": 40, "picture": "dressed"}]})");
-    const std::vector<std::string> words = {"--frames", "42", "--script", at("visit.json"), "--out"};
+    const std::vector<std::string> words = {"--frames", "42", "--script", at("visit.json"),
+                                            "--out"};
     const auto with = [&](const char* out) {
         std::vector<std::string> all = words;
         all.push_back(at(out));
@@ -160,9 +159,9 @@ TEST_F(KioskFaults, NothingHangsOnTheSystemsClock) {
     EXPECT_EQ(read_bytes(folder_ / "still" / "dressed.png", 16u << 20),
               read_bytes(folder_ / "leaping" / "dressed.png", 16u << 20));
     // On the live clock, with the watchdog: it neither sleeps for hours nor is it started again.
-    const auto live = kiosk({"--realtime", "--frames", "60", "--script", at("visit.json"), "--out",
-                             at("live")},
-                            "LD_PRELOAD=" TOILE_CLOCK_JUMPS);
+    const auto live =
+        kiosk({"--realtime", "--frames", "60", "--script", at("visit.json"), "--out", at("live")},
+              "LD_PRELOAD=" TOILE_CLOCK_JUMPS);
     ASSERT_EQ(live.status, 0) << live.output;
     EXPECT_THAT(live.output, Not(HasSubstr("started again"))) << live.output;
     EXPECT_THAT(live.output, Not(HasSubstr("warning"))) << live.output;
@@ -179,8 +178,8 @@ TEST_F(KioskFaults, OnTheLiveClockNoFaultKeepsFramesAwayForThreeSeconds) {
             frame += 12;
         }
     write("visit.json", steps + "]}");
-    write("kiosk.json", std::regex_replace(text_of("kiosk.json"), std::regex("\"away_s\": 0.5, "),
-                                           ""));
+    write("kiosk.json",
+          std::regex_replace(text_of("kiosk.json"), std::regex("\"away_s\": 0.5, "), ""));
     const auto run = kiosk({"--realtime", "--frames", std::to_string(frame + 20), "--script",
                             at("visit.json"), "--report", at("report.json")});
     ASSERT_EQ(run.status, 0) << run.output;

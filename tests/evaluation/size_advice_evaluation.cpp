@@ -53,8 +53,9 @@ sensor::Scenario scenario_of(const Settings& settings, const fs::path& person, s
 }
 
 /// The girths that charts name, of the fitted body by the rules of `toile measure`.
-Lengths found_girths(const fit::FitModel& model, const body::Measurer& measurer, fit::Fitter& fitter,
-                     const Settings& settings, const fs::path& person, std::uint64_t seed) {
+Lengths found_girths(const fit::FitModel& model, const body::Measurer& measurer,
+                     fit::Fitter& fitter, const Settings& settings, const fs::path& person,
+                     std::uint64_t seed) {
     sensor::Simulator simulator(scenario_of(settings, person, seed), &rows_on_all_cores);
     simulator.show(0);
     const auto seen = observe(simulator, 0);
@@ -155,25 +156,27 @@ Json summary(const Settings& settings) {
     const std::vector<Json> rows = read_lines(settings.results);
     Json out = Json::array();
     for (const fs::path& source : settings.garments) {
-        const garment::GarmentPackage package = garment::load_package(source);
+        const auto loaded = garment::load_package(source);
+        const garment::GarmentPackage& package = *loaded;
         // What is made on women's bodies is advised to women.
         const bool women = package.sizes.front().entry.made_on.starts_with("women");
         Count count;
         for (const Json& row : rows)
             if ((row["sex"] == "female") == women)
                 count_person(package, row, {settings.tolerance_m}, count);
-        out.push_back({{"garment", package.manifest.id},
-                       {"people", count.clear + count.near},
-                       {"clear", count.clear},
-                       {"clear_right", count.clear_right},
-                       {"clear_said_between", count.clear_between},
-                       {"near", count.near},
-                       {"near_said_between", count.near_between},
-                       {"near_within_one", count.near_either},
-                       {"off_by_two", count.off_by_two},
-                       {"mean_absolute_error_mm",
-                        1000.0 * count.absolute_m / std::max<double>(1.0, count.girths)},
-                       {"wrong", count.wrong}});
+        out.push_back(
+            {{"garment", package.manifest.id},
+             {"people", count.clear + count.near},
+             {"clear", count.clear},
+             {"clear_right", count.clear_right},
+             {"clear_said_between", count.clear_between},
+             {"near", count.near},
+             {"near_said_between", count.near_between},
+             {"near_within_one", count.near_either},
+             {"off_by_two", count.off_by_two},
+             {"mean_absolute_error_mm",
+              1000.0 * count.absolute_m / std::max(1.0, static_cast<double>(count.girths))},
+             {"wrong", count.wrong}});
     }
     return out;
 }

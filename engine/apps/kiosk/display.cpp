@@ -19,24 +19,21 @@ Display::Display(const KioskConfig& config, bool headless) {
         options.escape_closes = false;
         window_ = std::make_unique<render::Window>(options);
     }
-    screen_ = std::make_unique<render::Screen>(context(), config.width, config.height);
+    render::Context& context = window_ ? window_->context() : *offscreen_;
+    screen_ = std::make_unique<render::Screen>(context, config.width, config.height);
     const Measures sizes = measures(config.width, config.height);
     render::CanvasFonts fonts;
     fonts.sizes = {sizes.text, sizes.title};
     canvas_ = std::make_unique<render::Canvas>(fonts);
-    picture_ = std::make_unique<LivePicture>(context());
+    picture_ = std::make_unique<LivePicture>(context);
 }
 
-render::Context& Display::context() {
-    return window_ ? window_->context() : *offscreen_;
-}
-
-bool Display::lost() {
-    return context().lost();
+bool Display::lost() const {
+    return lost_ || (window_ && window_->lost());
 }
 
 void Display::lose() {
-    context().lose();
+    lost_ = true;
 }
 
 bool Display::poll() {

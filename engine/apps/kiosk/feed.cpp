@@ -116,12 +116,14 @@ bool Feed::fetch(Delivery& out, double now_s) {
             return true;
         }
         if (source_->ended()) {
-            if (again_)
+            if (again_) {
+                const std::lock_guard lock(tailor_.registry_mutex());
                 source_->rewind();
-            else if (live_)
+            } else if (live_) {
                 drop("the recording ended", now_s);
-            else
+            } else {
                 ended_ = true;
+            }
         } else if (live_ && now_s - frame_at_s_ > kSilent_s) {
             drop("no picture for two seconds", now_s);
         }
@@ -140,9 +142,10 @@ void Feed::keep_shapes(Delivery& out) {
         const auto known = std::find_if(told_.begin(), told_.end(), [&](const auto& shape) {
             return shape != nullptr && shape->revision == revision;
         });
-        out.shapes[i] = known != told_.end() ? *known
-                                             : std::make_shared<const pipeline::PersonShape>(
-                                                   source_->shape(revision));
+        out.shapes[i] =
+            known != told_.end()
+                ? *known
+                : std::make_shared<const pipeline::PersonShape>(source_->shape(revision));
     }
     told_ = out.shapes;
 }

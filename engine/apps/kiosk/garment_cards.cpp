@@ -34,7 +34,7 @@ void draw_card(render::Canvas& canvas, const CarouselItem& item, const Rect& pla
 void draw_carousel(render::Canvas& canvas, const ScreenView& view, const Rect& room) {
     const auto count = static_cast<int>(view.carousel.size());
     const int beside = std::min((count - 1) / 2, 1);
-    const float tall = std::min(room.height, room.width / 1.9f);
+    const float tall = std::min(room.height, room.width / 2.2f);
     const float wide = 0.75f * tall;
     for (int i = -beside; count > 0 && i <= beside; ++i) {
         const float scale = i == 0 ? 1.0f : 0.72f;
@@ -66,8 +66,8 @@ void draw_caption(render::Canvas& canvas, const Caption& caption) {
     const float pad = 0.4f * text;
     const float most = place.width - 2.0f * pad;
     // No wider than its words.
-    const float words = std::max(canvas.text_width(caption.name, name),
-                                 canvas.text_width(caption.advice, advice));
+    const float words =
+        std::max(canvas.text_width(caption.name, name), canvas.text_width(caption.advice, advice));
     const float room = std::min(most, words + 1.0f);
     const auto tall_of = [&](const std::string& said, const TextStyle& style) {
         return said.empty() ? 0.0f : canvas.paragraph_height(room, said, style);

@@ -52,15 +52,16 @@ ScreenTimes times_of(const KioskConfig& config) {
 
 Kiosk::Kiosk(KioskRun run, const GlobalOptions& global)
     : run_(std::move(run)), texts_(Texts::load(run_.config.language)),
-      articles_(read_articles(run_.config)), tailor_(global, run_.realtime || !run_.headless,
-                                                     !(run_.realtime || !run_.headless),
-                                                     run_.safe || run_.stock),
+      articles_(read_articles(run_.config)),
+      tailor_(global, run_.realtime || !run_.headless, !(run_.realtime || !run_.headless),
+              run_.safe || run_.stock),
       scribe_(!(run_.realtime || !run_.headless)),
       feed_(tailor_, run_.config.source, run_.config.people, run_.config.camera,
             run_.realtime || !run_.headless, run_.frames > 0),
       visitors_(tailor_, run_.config.people, run_.config.away_s),
       screens_(times_of(run_.config), run_.config.measure, run_.safe),
-      pointers_{Pointer({run_.config.dwell_s}), Pointer({run_.config.dwell_s})}, scale_(1.0f), live_(run_.realtime || !run_.headless) {
+      pointers_{Pointer({run_.config.dwell_s}), Pointer({run_.config.dwell_s})}, scale_(1.0f),
+      live_(run_.realtime || !run_.headless) {
     display_ = std::make_unique<Display>(run_.config, run_.headless);
     display_->picture().spoil(run_.spoil);
     load_thumbnails();
@@ -273,8 +274,8 @@ void Kiosk::take_faults() {
             if (!look) continue;
             const std::vector<std::string> faults = look->person->faults();
             for (; look->faults_said < faults.size(); ++look->faults_said)
-                note_fault(Fault::plugin, texts_.with(Text::plugin_off,
-                                                      {{"why", faults[look->faults_said]}}));
+                note_fault(Fault::plugin,
+                           texts_.with(Text::plugin_off, {{"why", faults[look->faults_said]}}));
         }
 }
 

@@ -156,7 +156,7 @@ class Kiosk {
     double metrics_at_s_ = 0.0;
     std::vector<double> script_began_s_; ///< of each step that comes again, or below 0
     double script_at_s_ = 0.0;           ///< when the script was looked at last
-    double clock_jump_s_ = 3600.0; ///< of the next fault "clock"
+    double clock_jump_s_ = 3600.0;       ///< of the next fault "clock"
     pipeline::StageClock clock_;
     pipeline::DurationHistogram frame_time_;
     pipeline::DurationHistogram compute_time_;  ///< all but drawing and what the picture needs

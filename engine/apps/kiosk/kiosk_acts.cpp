@@ -17,8 +17,7 @@ void Kiosk::act(Action action, std::uint32_t person) {
         shopper->agreed = true;
         if (screens_.now() == ScreenName::mirror) return join(*shopper);
     }
-    if (action == Action::finish && shopper != nullptr &&
-        arrangement() == Arrangement::two_people)
+    if (action == Action::finish && shopper != nullptr && arrangement() == Arrangement::two_people)
         return leave(*shopper);
     if (action == Action::snapshot && run_.config.snapshots.empty()) return;
     const ScreenName before = screens_.now();

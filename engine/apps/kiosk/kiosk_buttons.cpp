@@ -70,8 +70,7 @@ std::vector<Button> Kiosk::buttons() const {
         return Seat{dressed ? s.id : 0, on_the_left(s), s.reach};
     };
     const Seat own = first != nullptr ? seat(*first) : Seat{};
-    if (now == Arrangement::two_looks)
-        return lay_out_looks(offers_of(first), width, height, own);
+    if (now == Arrangement::two_looks) return lay_out_looks(offers_of(first), width, height, own);
     std::vector<Button> out;
     if (now == Arrangement::one) out = lay_out(offers_of(first), width, height, own);
     for (const Shopper& shopper : visitors_.all()) {
@@ -132,7 +131,9 @@ std::vector<Caption> Kiosk::captions() const {
         const Caption all = caption_of(*first, 0);
         out.push_back({{sizes.edge, sizes.margin, wide, 0.0f}, render::Align::start, all.name, ""});
         out.push_back({{w - sizes.edge - wide, sizes.margin, wide, 0.0f},
-                       render::Align::end, "", all.advice});
+                       render::Align::end,
+                       "",
+                       all.advice});
     } else if (now == Arrangement::two_looks) {
         for (std::size_t look = 0; look < 2; ++look) {
             const render::Rect& picture = stage.pictures[look];

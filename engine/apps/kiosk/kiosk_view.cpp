@@ -206,10 +206,9 @@ void Kiosk::draw_picture() {
     LivePicture& picture = display_->picture();
     if (picture.empty()) return;
     const bool two = arrangement() == Arrangement::two_looks;
-    const Stage stage =
-        stage_of(arrangement(), display_->screen().width(), display_->screen().height(),
-                 static_cast<float>(picture.camera_width()) /
-                     static_cast<float>(picture.camera_height()));
+    const Stage stage = stage_of(
+        arrangement(), display_->screen().width(), display_->screen().height(),
+        static_cast<float>(picture.camera_width()) / static_cast<float>(picture.camera_height()));
     for (std::size_t look = 0; look < (two ? 2u : 1u); ++look) {
         if ((fresh_ || two) && feed_.up()) hide_cloth(look == 1);
         picture.draw_mirror(worn_meshes(look == 1), scale_.now());

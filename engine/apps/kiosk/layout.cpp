@@ -12,7 +12,7 @@ constexpr float kDown_m = 0.42f;
 constexpr float kLower_m = 0.5f * (kDown_m - kUp_m); // middle of that
 // From the middle sideways: arms that hang end here, nothing covers them.
 constexpr float kBody_m = 0.31f;
-constexpr float kNarrowest = 0.23f; // of an upright screen: words of nine letters
+constexpr float kNarrowest = 0.23f;    // of an upright screen: words of nine letters
 constexpr float kPanelOfPeople = 0.8f; // a metre of a hand's way, of what the mirror shows
 
 bool on_the_left(Action action) {
@@ -100,8 +100,7 @@ std::vector<Button> lay_out(const std::vector<Action>& offers, int width, int he
         right.width = width_in(w - sizes.edge - to, sizes, w);
         left.x = std::clamp(from - left.width, sizes.edge,
                             w - 2.0f * sizes.margin - left.width - right.width);
-        right.x =
-            std::clamp(to, left.x + left.width + sizes.margin, w - sizes.edge - right.width);
+        right.x = std::clamp(to, left.x + left.width + sizes.margin, w - sizes.edge - right.width);
     }
     return stacked(columns, middle, sizes, h, seat.person, offers);
 }
@@ -113,8 +112,8 @@ std::vector<Button> lay_out_looks(const std::vector<Action>& offers, int width, 
     const render::Rect& panel = *stage.panel;
     Columns columns = shared(offers);
     const bool upright = height > width;
-    const float wide = upright ? std::round(0.25f * panel.width)
-                               : widest(sizes, static_cast<float>(width));
+    const float wide =
+        upright ? std::round(0.25f * panel.width) : widest(sizes, static_cast<float>(width));
     columns.left.width = columns.right.width = wide;
     columns.left.x = panel.x + (upright ? sizes.edge : 0.5f * sizes.margin);
     columns.right.x = panel.x + panel.width - wide - (upright ? sizes.edge : 0.5f * sizes.margin);
@@ -144,11 +143,11 @@ std::vector<Button> lay_out_person(const std::vector<Action>& offers, int width,
     Column column;
     column.actions = offers;
     column.width = widest(sizes, w);
-    const Reach reach = seat.reach.value_or(
-        Reach{{(seat.on_the_left ? 0.35f : 0.65f) * w, 0.4f * h}, sizes.metre});
+    const Reach reach =
+        seat.reach.value_or(Reach{{(seat.on_the_left ? 0.35f : 0.65f) * w, 0.4f * h}, sizes.metre});
     const float body = kBody_m * reach.metre;
-    column.x = seat.on_the_left ? reach.shoulders.x() - body - column.width
-                                : reach.shoulders.x() + body;
+    column.x =
+        seat.on_the_left ? reach.shoulders.x() - body - column.width : reach.shoulders.x() + body;
     column.x = std::clamp(column.x, sizes.edge, w - sizes.edge - column.width);
     stack(column, reach.shoulders.y() + kLower_m * reach.metre, sizes, h, seat.person, out);
     return out;
@@ -168,8 +167,14 @@ Button lay_out_beside(Action action, int width, int height, const Seat& seat,
     // No room on the far side: beneath the other one's buttons, or above them.
     const render::Rect* low = nullptr;
     const render::Rect* high = nullptr;
+    const auto outward = [&](const Button& button) {
+        return seat.on_the_left ? -button.rect.x : button.rect.x;
+    };
+    float outermost = -w;
+    for (const Button& button : others)
+        outermost = std::max(outermost, outward(button));
     for (const Button& button : others) {
-        if ((button.rect.centre().x() < 0.5f * w) != seat.on_the_left) continue;
+        if (outward(button) < outermost) continue;
         if (low == nullptr || button.rect.y > low->y) low = &button.rect;
         if (high == nullptr || button.rect.y < high->y) high = &button.rect;
     }
@@ -181,8 +186,7 @@ Button lay_out_beside(Action action, int width, int height, const Seat& seat,
     return out;
 }
 
-std::optional<Reach> panel_reach(Arrangement arrangement, int width, int height,
-                                 bool on_the_left) {
+std::optional<Reach> panel_reach(Arrangement arrangement, int width, int height, bool on_the_left) {
     const Stage stage = stage_of(arrangement, width, height);
     if (!stage.panel) return std::nullopt;
     const Measures sizes = measures(width, height);

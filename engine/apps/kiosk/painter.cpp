@@ -267,7 +267,7 @@ class Painter {
             return texts_[Text::live];
         case Action::compare:
             return texts_[view_.arrangement == Arrangement::two_looks ? Text::compare_done
-                                                                       : Text::compare];
+                                                                      : Text::compare];
         case Action::snapshot:
             return texts_[Text::snapshot];
         case Action::finish:

@@ -51,7 +51,7 @@ struct ScreenView {
     std::array<bool, 4> turned{}; ///< front, left, back, right
 
     std::vector<CarouselItem> carousel;
-    std::size_t chosen = 0;  ///< of the carousel
+    std::size_t chosen = 0; ///< of the carousel
     std::vector<Caption> captions;
     std::map<std::uint32_t, std::string> size_buttons; ///< by Button::person: words
     std::string note; ///< to the shopper: a picture kept, a moment please

@@ -68,8 +68,8 @@ std::vector<ScriptStep> Script::between(const std::vector<double>& began_s, doub
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const double every_s = steps[i].every_s;
         if (every_s <= 0.0 || began_s[i] < 0.0) continue;
-        const double times =
-            std::floor((now_s - began_s[i]) / every_s) - std::floor((before_s - began_s[i]) / every_s);
+        const double times = std::floor((now_s - began_s[i]) / every_s) -
+                             std::floor((before_s - began_s[i]) / every_s);
         for (int k = 0; k < static_cast<int>(times); ++k)
             out.push_back(steps[i]);
     }

@@ -8,11 +8,11 @@ namespace {
 
 using render::Rect;
 
-constexpr float kGap = 0.28f;           // between buttons, of a button's height
-constexpr float kTall_m = 2.2f;         // that a mirror shows
-constexpr float kRowsOfLooks = 4.0f;    // of buttons, in two columns
-constexpr float kRowsOfPeople = 3.0f;   // in two columns for each
-constexpr float kCaptionLines = 4.2f;   // above each one's buttons
+constexpr float kGap = 0.28f;            // between buttons, of a button's height
+constexpr float kTall_m = 2.2f;          // that a mirror shows
+constexpr float kRowsOfLooks = 4.0f;     // of buttons, in two columns
+constexpr float kRowsOfPeople = 3.0f;    // in two columns for each
+constexpr float kCaptionLines = 4.2f;    // above each one's buttons
 constexpr float kBesideMiddle_m = 0.17f; // columns between two looks
 
 // Two pictures above, buttons below.

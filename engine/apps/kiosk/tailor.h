@@ -131,7 +131,7 @@ class Tailor {
     std::vector<DressResult> dressed_;
     std::optional<MeasureResult> measured_;
     std::map<std::uint32_t, pipeline::BodyFrame> seen_;
-    std::uint64_t visit_ = 0; ///< results of earlier ones are dropped
+    std::uint64_t visit_ = 0;                          ///< results of earlier ones are dropped
     std::map<std::uint32_t, std::uint64_t> forgotten_; ///< how often each was: their orders too
     std::atomic<double> progress_{0.0};
     std::atomic<int> open_{0};

@@ -99,8 +99,8 @@ void Visitors::erase(std::uint32_t id) {
 }
 
 const Shopper* Visitors::first() const {
-    const auto agreed = std::find_if(shoppers_.begin(), shoppers_.end(),
-                                     [](const Shopper& s) { return s.agreed; });
+    const auto agreed =
+        std::find_if(shoppers_.begin(), shoppers_.end(), [](const Shopper& s) { return s.agreed; });
     if (agreed != shoppers_.end()) return &*agreed;
     return shoppers_.empty() ? nullptr : &shoppers_.front();
 }
@@ -110,8 +110,8 @@ Shopper* Visitors::first() {
 }
 
 std::size_t Visitors::agreed() const {
-    return static_cast<std::size_t>(std::count_if(
-        shoppers_.begin(), shoppers_.end(), [](const Shopper& s) { return s.agreed; }));
+    return static_cast<std::size_t>(std::count_if(shoppers_.begin(), shoppers_.end(),
+                                                  [](const Shopper& s) { return s.agreed; }));
 }
 
 std::uint32_t Visitors::count() const {

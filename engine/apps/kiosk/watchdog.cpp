@@ -141,8 +141,7 @@ Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOption
         if (host::interrupt_flag()) return {true, child.end(SIGTERM) == 0 ? 0 : 1, ""};
         if (silent_s > allowed_s) {
             child.end(SIGKILL);
-            return {false, 1,
-                    "it gave no sign of life for " + milliseconds(silent_s)};
+            return {false, 1, "it gave no sign of life for " + milliseconds(silent_s)};
         }
         if (policy.recovered(pipeline::wall_seconds())) {
             child.end(SIGTERM);

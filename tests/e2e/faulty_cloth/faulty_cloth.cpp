@@ -1,6 +1,6 @@
-// Cloth that hangs as plain skinning has it, until its thirtieth frame after each dressing: then it
+// Cloth that hangs as plain skinning has it, until its sixtieth step after each dressing: then it
 // does what its folder's name says. The mirror must go on (kiosk_faults_test.cpp).
-#include "sdk/plugin.h"
+#include "sdk/sdk.h"
 
 #include <algorithm>
 #include <csignal>
@@ -54,8 +54,7 @@ class FaultyCloth {
     void fail(std::span<Float3> positions) const {
         if (fault_ == "errors") throw sdk::Failure(TOILE_E_DEVICE, "the cloth tore");
         if (fault_ == "throws") throw std::runtime_error("the cloth burst");
-        if (fault_ == "not_finite")
-            positions[0][1] = std::numeric_limits<float>::quiet_NaN();
+        if (fault_ == "not_finite") positions[0][1] = std::numeric_limits<float>::quiet_NaN();
         if (fault_ == "crashes") std::raise(SIGSEGV);
         if (fault_ == "hangs")
             for (;;)

@@ -108,12 +108,11 @@ void expect_inside(const render::Rect& inner, const render::Rect& outer) {
     EXPECT_LE(inner.y + inner.height, outer.y + outer.height + 0.5f);
 }
 
-const std::vector<Action> kMirror = {Action::previous_garment, Action::next_garment,
-                                     Action::next_size,        Action::next_colour,
-                                     Action::freeze,           Action::compare,
-                                     Action::snapshot,         Action::finish};
-const std::vector<Action> kOwn = {Action::previous_garment, Action::next_garment,
-                                  Action::next_size, Action::next_colour, Action::finish};
+const std::vector<Action> kMirror = {
+    Action::previous_garment, Action::next_garment, Action::next_size, Action::next_colour,
+    Action::freeze,           Action::compare,      Action::snapshot,  Action::finish};
+const std::vector<Action> kOwn = {Action::previous_garment, Action::next_garment, Action::next_size,
+                                  Action::next_colour, Action::finish};
 
 TEST_P(KioskLayout, NothingStandsOverAShopperInTheMiddle) {
     const auto [width, height] = GetParam();
@@ -202,7 +201,8 @@ TEST_P(KioskLayout, TwoPeopleHaveButtonsOfTheirOwnOnTheirOwnSide) {
     }
     // Somebody who has not been asked finds one button, apart from all others.
     const auto others = lay_out(kMirror, width, height, {1, true, people[0]});
-    const Button asked = lay_out_beside(Action::agree, width, height, {2, false, people[1]}, others);
+    const Button asked =
+        lay_out_beside(Action::agree, width, height, {2, false, people[1]}, others);
     EXPECT_EQ(asked.person, 2u);
     for (const Button& button : others)
         EXPECT_TRUE(apart(asked.rect, button.rect)) << action_name(button.action);

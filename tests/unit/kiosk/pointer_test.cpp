@@ -87,9 +87,12 @@ TEST(KioskPointer, HandsPressTheButtonsOfTheirOwnPersonOnly) {
     const std::vector<Button> buttons = {{Action::next_garment, {0, 0, 100, 80}, 1},
                                          {Action::next_garment, {0, 100, 100, 80}, 2},
                                          {Action::agree, {0, 200, 100, 80}, 0}};
-    for (const auto& [person, y, pressed] :
-         {std::tuple{1u, 40.0f, true}, {2u, 40.0f, false}, {2u, 140.0f, true},
-          {1u, 140.0f, false}, {1u, 240.0f, true}, {2u, 240.0f, true}}) {
+    for (const auto& [person, y, pressed] : {std::tuple{1u, 40.0f, true},
+                                             {2u, 40.0f, false},
+                                             {2u, 140.0f, true},
+                                             {1u, 140.0f, false},
+                                             {1u, 240.0f, true},
+                                             {2u, 240.0f, true}}) {
         Pointer pointer({});
         Action last = Action::invalid;
         for (int i = 0; i < 40; ++i) {
