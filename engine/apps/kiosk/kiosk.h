@@ -137,7 +137,7 @@ class Kiosk {
     double now_s_ = 0.0;
     std::int64_t last_ns_ = -1;
     std::uint32_t last_sequence_ = 0;
-    double last_taken_s_ = 0.0; ///< wall, of the frame before
+    double last_taken_s_ = 0.0;            ///< wall, of the frame before
     std::optional<double> clock_offset_s_; ///< wall minus capture time
     Measuring measuring_ = Measuring::not_begun;
     std::uint32_t measured_ = 0; ///< whose turn it is, or was
