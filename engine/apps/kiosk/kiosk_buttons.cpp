@@ -153,6 +153,10 @@ std::vector<Caption> Kiosk::captions() const {
             if (!stage.panel) {
                 one.place.width = 0.3f * w;
                 one.place.x = left ? sizes.edge : w - sizes.edge - one.place.width;
+                for (const Button& button : buttons()) // beneath the own ones
+                    if (button.person == shopper.id)
+                        one.place.y =
+                            std::max(one.place.y, button.rect.y + button.rect.height + gap);
             }
             out.push_back(std::move(one));
         }
