@@ -192,8 +192,7 @@ void Kiosk::look_at_clock(double wall_s, double captured_s) {
     // A mirror that was not let run for a while has no camera with a wrong clock.
     const double meant_s = live_ ? people_.taken_s - last_taken_s_ : 0.0;
     last_taken_s_ = people_.taken_s;
-    const bool jumped =
-        on && last_ns_ >= 0 && (passed_s <= 0.0 || passed_s - meant_s > kClockJump_s);
+    const bool jumped = on && (passed_s <= 0.0 || passed_s - meant_s > kClockJump_s);
     if (camera_frames_ > 0) longest_gap_s_ = std::max(longest_gap_s_, wall_s - last_frame_s_);
     if (camera_frames_ == 0) first_frame_s_ = wall_s;
     if (on) metrics_.dropped += people_.sequence - last_sequence_ - 1;
