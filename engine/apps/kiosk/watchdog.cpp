@@ -12,12 +12,15 @@
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 
 extern char** environ; // NOLINT(readability-redundant-declaration): POSIX asks for it
 
@@ -27,6 +30,7 @@ namespace {
 constexpr int kPoll_ms = 50;
 // Of one turn of the loop: when this process itself does not get to run, nobody has stalled.
 constexpr double kMostOfATurn_s = 0.1;
+constexpr double kLeastOfATurn = 0.2; // counts, however starved the mirror is
 
 /// One run of the mirror.
 class Child {
@@ -71,6 +75,19 @@ class Child {
         if (count <= 0) return std::nullopt;
         return static_cast<LifeSign>(bytes[static_cast<std::size_t>(count) - 1]);
     }
+    /// Seconds that its threads were ready to run and the machine had no core for them.
+    [[nodiscard]] double starved_s() const {
+        double out = 0.0;
+        std::error_code none;
+        const std::string tasks = "/proc/" + std::to_string(pid_) + "/task";
+        for (const auto& task : std::filesystem::directory_iterator(tasks, none)) {
+            std::ifstream in(task.path() / "schedstat");
+            double ran_ns = 0.0;
+            double waited_ns = 0.0;
+            if (in >> ran_ns >> waited_ns) out += 1e-9 * waited_ns;
+        }
+        return out;
+    }
     /// True once it has ended.
     bool ended(int& status) {
         if (waitpid(pid_, &status, WNOHANG) != pid_) return false;
@@ -112,12 +129,17 @@ Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOption
     Child child(arguments);
     double turn_s = pipeline::wall_seconds();
     double silent_s = 0.0;
+    double starved_s = 0.0;
     double allowed_s = options.start_s;
     bool signed_once = false;
     for (;;) {
         const auto sign = child.sign();
         const double now_s = pipeline::wall_seconds();
-        silent_s += std::min(now_s - turn_s, kMostOfATurn_s);
+        // A machine with other work to do is no stall, but not for ever.
+        const double starved_now_s = child.starved_s();
+        const double waited_s = starved_now_s - std::exchange(starved_s, starved_now_s);
+        const double turn = std::min(now_s - turn_s, kMostOfATurn_s);
+        silent_s += std::clamp(turn - std::max(0.0, waited_s), kLeastOfATurn * turn, turn);
         turn_s = now_s;
         if (sign) {
             silent_s = 0.0;
