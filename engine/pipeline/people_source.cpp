@@ -6,6 +6,8 @@
 #include "host/views.h"
 #include "pipeline/sensor_views.h"
 
+#include <cmath>
+
 namespace toile::pipeline {
 namespace {
 
@@ -46,7 +48,10 @@ std::vector<Row> rows_of(const toile_view& view, std::uint32_t format) {
 PeopleSource::PeopleSource(const std::string& uri, host::Registry& registry,
                            host::Services& services, const toile_limits& limits,
                            const TrackingWish& wish, host::Job& job)
-    : sensor_(uri, registry, services, limits, job), stream_(sensor_.streams().front()),
+    : open_([&registry, &services, &job, uri, limits] {
+          return std::make_unique<SensorSource>(uri, registry, services, limits, job);
+      }),
+      sensor_(open_()), stream_(sensor_->streams().front()),
       tracker_(find_tracker(registry, services)), table_(&tracker_->table<toile_body_source>()),
       joints_(wish.most_people), people_(wish.most_people) {
     wish_for(*tracker_, "smoothing", wish.smoothing);
@@ -70,8 +75,19 @@ PeopleSource::~PeopleSource() {
     });
 }
 
+void PeopleSource::rewind() {
+    sensor_.reset(); // some devices open once only
+    sensor_ = open_();
+    const double period_s = stream_.frame_period_s > 0.0 ? stream_.frame_period_s : 1.0 / 30.0;
+    shift_ns_ = last_ns_ + std::llround(1e9 * period_s);
+    sequence_shift_ = last_sequence_ + 1;
+}
+
 bool PeopleSource::next(PeopleFrame& out) {
-    if (!sensor_.next(0, pictures_)) return false;
+    if (!sensor_->next(0, pictures_)) return false;
+    out.taken_s = wall_seconds();
+    pictures_.timestamp_ns += shift_ns_;
+    pictures_.sequence += sequence_shift_;
     const toile_frame frame = frame_view(pictures_, 0);
     auto input = host::sized<toile_body_source_input>();
     input.frame_count = 1;
@@ -79,8 +95,8 @@ bool PeopleSource::next(PeopleFrame& out) {
     const double began = cpu_seconds();
     tracker_->call("feed", [&](toile_instance* i) { return table_->feed(i, &input); });
     time_.add(cpu_seconds() - began);
-    out.sequence = pictures_.sequence;
-    out.timestamp_ns = pictures_.timestamp_ns;
+    out.sequence = last_sequence_ = pictures_.sequence;
+    out.timestamp_ns = last_ns_ = pictures_.timestamp_ns;
     read_people(out);
     return true;
 }

@@ -7,7 +7,9 @@
 #include "pipeline/sensor_source.h"
 #include "pipeline/stage_clock.h"
 
+#include <functional>
 #include <map>
+#include <memory>
 
 namespace toile::pipeline {
 
@@ -25,7 +27,8 @@ struct PersonShape {
 struct PeopleFrame {
     std::uint32_t sequence = 0;
     std::int64_t timestamp_ns = 0;
-    std::vector<BodyFrame> people;     ///< world, or the camera's frame when it has no place
+    double taken_s = 0.0;          ///< wall_seconds when the sensor gave it, before it was tracked
+    std::vector<BodyFrame> people; ///< world, or the camera's frame when it has no place
     std::vector<std::uint64_t> shapes; ///< revision of each, of PeopleSource::shape; 0: none told
 };
 
@@ -51,12 +54,19 @@ class PeopleSource {
 
     /// True when there was a frame. \throw Error when sensor or tracker fails
     bool next(PeopleFrame& out);
-    [[nodiscard]] bool ended() const { return sensor_.ended(0); }
+    [[nodiscard]] bool ended() const { return sensor_->ended(0); }
 
     /// The first camera, where it stands as far as sensor or wish tell.
     [[nodiscard]] const SensorStream& stream() const { return stream_; }
     /// The pictures of the frame that `next` gave last.
     [[nodiscard]] const SensorFrame& pictures() const noexcept { return pictures_; }
+    /// The same to keep: swapped for what was in `out`.
+    void take_pictures(SensorFrame& out) noexcept { std::swap(out, pictures_); }
+    /// A recording begins again; its frames are numbered and timed on, for the tracker too.
+    /// \throw Error when it cannot be opened again [worker]
+    void rewind();
+    /// Timestamps are moved by so much from now on, as if the sensor's clock had been set.
+    void shift_clock(std::int64_t by_ns) noexcept { shift_ns_ += by_ns; }
     /// \throw std::out_of_range for a revision that no frame told
     [[nodiscard]] const PersonShape& shape(std::uint64_t revision) const {
         return shapes_.at(revision);
@@ -69,7 +79,8 @@ class PeopleSource {
     void read_people(PeopleFrame& out);
     void keep_shape(const toile_body& body);
 
-    SensorSource sensor_;
+    std::function<std::unique_ptr<SensorSource>()> open_;
+    std::unique_ptr<SensorSource> sensor_;
     SensorStream stream_;
     std::unique_ptr<host::Instance> tracker_;
     const toile_body_source* table_ = nullptr;
@@ -78,6 +89,10 @@ class PeopleSource {
     std::vector<JointArray> joints_;
     std::vector<toile_person> people_;
     DurationHistogram time_;
+    std::int64_t last_ns_ = 0;
+    std::uint32_t last_sequence_ = 0;
+    std::int64_t shift_ns_ = 0;
+    std::uint32_t sequence_shift_ = 0;
 };
 
 } // namespace toile::pipeline

@@ -62,6 +62,7 @@ GLFWwindow* make_window(const WindowOptions& options) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
     glfwWindowHint(GLFW_VISIBLE, options.visible ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
@@ -202,6 +203,13 @@ void Window::show(Screen& screen) {
     if (width() < 1 || height() < 1) return;
     screen.present(width(), height());
     glfwSwapBuffers(impl_->window_);
+}
+
+bool Window::lost() const {
+    const auto status =
+        reinterpret_cast<GLenum (*)()>(glfwGetProcAddress("glGetGraphicsResetStatusARB"));
+    return status != nullptr && glfwExtensionSupported("GL_ARB_robustness") == GLFW_TRUE &&
+           status() != GL_NO_ERROR;
 }
 
 } // namespace toile::render

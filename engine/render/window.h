@@ -62,6 +62,10 @@ class Window {
     void show(Renderer& renderer);
     void show(Screen& screen);
 
+    /// A graphics processor that was reset or went away: nothing that was made on this context
+    /// works any more. Never true where the driver does not tell.
+    [[nodiscard]] bool lost() const;
+
   private:
     class Impl;
     std::unique_ptr<Impl> impl_;

@@ -1,9 +1,6 @@
 // The mirror of a shop as a whole: a visit, its privacy, and what it goes on through.
-#include "core/bytes.h"
 #include "core/json.h"
-#include "imaging/image.h"
-#include "support/run_program.h"
-#include "support/temporary_folder.h"
+#include "kiosk_visit.h"
 
 #include <gmock/gmock.h>
 #include <regex>
@@ -11,16 +8,8 @@
 namespace toile::test {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
-
-/// Somebody who turns once in four seconds, and a wall.
-constexpr const char* kTurning = R"({"schema": 1, "frames": 400,
-    "people": [{"body": {"avatar": "woman"}, "turntable_s": 4}],
-    "scene": {"walls": [{"position": [0, 0, -1.4]}]},
-    "cameras": [{"name": "front", "mount": "upright", "position": [0, 1.1, 2.0],
-                 "look_at": [0, 0.95, 0]}]})";
 
 /// Two people side by side.
 constexpr const char* kTwo = R"({"schema": 1, "frames": 400,
@@ -33,50 +22,6 @@ constexpr const char* kTwo = R"({"schema": 1, "frames": 400,
 constexpr const char* kEmpty = R"({"schema": 1, "frames": 400, "people": [],
     "scene": {"walls": [{"position": [0, 0, -1.4]}]},
     "cameras": [{"name": "front", "position": [0, 1.2, 2.6], "look_at": [0, 0.95, 0]}]})";
-
-class KioskTest : public testing::Test {
-  protected:
-    void SetUp() override {
-        write("scenario.json", kTurning);
-        configure(R"("people": 1)");
-    }
-    void write(const char* name, const std::string& text) { write_text(folder_ / name, text); }
-    void configure(const std::string& more) {
-        std::string text = R"({"schema": 1, "garments": ["tee", "dress"], "width": 270,
-            "height": 480, "away_s": 0.5, )";
-        if (more.find("measure") == std::string::npos) text += R"("measure": false, )";
-        write("kiosk.json", text + more + "}");
-    }
-    [[nodiscard]] std::string at(const char* name) const { return (folder_ / name).string(); }
-    [[nodiscard]] std::string simulated() const { return "simulated:" + at("scenario.json"); }
-    ProgramResult kiosk(std::vector<std::string> more, const std::string& environment = "") {
-        std::vector<std::string> words = {"kiosk",    "--config",  at("kiosk.json"),
-                                          "--source", simulated(), "--headless"};
-        words.insert(words.end(), more.begin(), more.end());
-        return run_toile(words, environment);
-    }
-    [[nodiscard]] std::string text_of(const char* name) const {
-        const auto bytes = read_bytes(folder_ / name, 1u << 20);
-        return {bytes.begin(), bytes.end()};
-    }
-
-    TemporaryFolder folder_;
-};
-
-/// Share of pixels that differ by more than a little.
-double difference(const fs::path& a, const fs::path& b) {
-    const imaging::Image one = imaging::load_image(a);
-    const imaging::Image two = imaging::load_image(b);
-    if (one.pixels.size() != two.pixels.size()) return 1.0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < one.pixels.size(); i += 4) {
-        int most = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            most = std::max(most, std::abs(one.pixels[i + k] - two.pixels[i + k]));
-        count += most > 40 ? 1 : 0;
-    }
-    return 4.0 * static_cast<double>(count) / static_cast<double>(one.pixels.size());
-}
 
 TEST_F(KioskTest, NothingIsLeftOnDisk) {
     configure(R"("people": 1, "measure": true)");
@@ -171,34 +116,6 @@ TEST_F(KioskTest, TwoPeopleWearWhatEachOfThemAskedFor) {
     EXPECT_THAT(text_of("kiosk.prom"), HasSubstr("toile_kiosk_garments_total 3\n"));
 }
 
-TEST_F(KioskTest, CameraPictureAndDiskAreLostFiveTimesEachAndTheMirrorStaysUp) {
-    configure(R"("people": 1, "metrics": "kiosk.prom", "snapshots": "shots")");
-    fs::create_directory(folder_ / "shots");
-    std::string steps = R"({"schema": 1, "steps": [{"frame": 20, "act": "agree"})";
-    for (int i = 0; i < 5; ++i) {
-        const int frame = 30 + 24 * i;
-        for (const auto& [at, fault] :
-             {std::pair{frame, "camera"}, std::pair{frame + 18, "picture"},
-              std::pair{frame + 20, "disk"}})
-            steps += R"(, {"frame": )" + std::to_string(at) + R"(, "fault": ")" + fault + "\"}";
-        steps += R"(, {"frame": )" + std::to_string(frame + 20) + R"(, "act": "snapshot"})";
-    }
-    write("visit.json", steps + R"(, {"frame": 154, "picture": "end"}]})");
-    // The camera is away for half a second of the mirror's time: longer than that is nobody there.
-    write("kiosk.json", std::regex_replace(text_of("kiosk.json"), std::regex("\"away_s\": 0.5"),
-                                           "\"away_s\": 1.0"));
-    const auto run = kiosk({"--frames", "156", "--script", at("visit.json"), "--out", at("out")});
-    ASSERT_EQ(run.status, 0) << run.output;
-    const std::string metrics = text_of("kiosk.prom");
-    for (const char* fault : {"camera", "picture", "disk"})
-        EXPECT_THAT(metrics, HasSubstr("faults_total{kind=\"" + std::string(fault) + "\"} 5\n"));
-    EXPECT_THAT(metrics, HasSubstr("camera_up 1\n"));
-    EXPECT_THAT(metrics, HasSubstr("screen{name=\"mirror\"} 1\n")) << "the visit goes on";
-    EXPECT_EQ(imaging::load_image(folder_ / "out" / "end.png").width, 270);
-    // The five pictures fell onto the full disk; nothing half written is left.
-    EXPECT_TRUE(fs::is_empty(folder_ / "shots"));
-}
-
 TEST_F(KioskTest, ASnapshotIsKeptOnRequestOnlyAndWithoutButtons) {
     configure(R"("people": 1, "snapshots": "shots")");
     fs::create_directory(folder_ / "shots");
@@ -211,36 +128,6 @@ TEST_F(KioskTest, ASnapshotIsKeptOnRequestOnlyAndWithoutButtons) {
               1);
     EXPECT_GT(difference(folder_ / "shots" / "look-0001.png", folder_ / "out" / "screen.png"),
               0.02);
-}
-
-TEST_F(KioskTest, TheWatchdogStartsACrashedAndAStalledMirrorAgain) {
-    for (const char* fault : {"crash", "stall"}) {
-        configure(R"("people": 1, "metrics": "kiosk.prom", "stall_s": 3)");
-        write("visit.json", R"({"schema": 1, "steps": [{"frame": 6, "fault": ")" +
-                                std::string(fault) + R"("}]})");
-        const auto run = kiosk({"--realtime", "--frames", "12", "--script", at("visit.json")});
-        ASSERT_EQ(run.status, 0) << run.output;
-        EXPECT_THAT(run.output, HasSubstr("started again"));
-        EXPECT_THAT(text_of("kiosk.prom"), HasSubstr("toile_kiosk_restarts_total 1\n"));
-    }
-}
-
-TEST_F(KioskTest, AGarmentThatChangesOnDiskIsReadAgainAndABadOneRefused) {
-    fs::create_directory(folder_ / "garments");
-    for (const char* id : {"tee", "skirt"})
-        fs::copy(fs::path(TOILE_SOURCE_DIR) / "garments" / id, folder_ / "garments" / id);
-    write("kiosk.json", R"({"schema": 1, "garments_folder": "garments", "width": 270,
-        "height": 480, "people": 1, "watchdog": false})");
-    const std::string manifest = at("garments/tee/garment.json");
-    const std::string script =
-        toile_program() + " kiosk --config " + at("kiosk.json") + " --source " + simulated() +
-        " --headless --realtime --frames 100000 & pid=$!; sleep 4; cp " + manifest + " " +
-        at("good") + "; echo '{' > " + manifest + "; sleep 4; cp " + at("good") + " " + manifest +
-        "; sleep 5; kill -TERM $pid; wait $pid; echo status $?";
-    const ProgramResult run = run_program({"sh", "-c", script});
-    EXPECT_THAT(run.output, HasSubstr("Garment tee is refused"));
-    EXPECT_THAT(run.output, HasSubstr("garment.json"));
-    EXPECT_THAT(run.output, HasSubstr("status 0")) << "it went on and ended when told to";
 }
 
 TEST_F(KioskTest, WrongUseIsRefusedWithWords) {

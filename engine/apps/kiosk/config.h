@@ -41,7 +41,7 @@ struct KioskConfig {
     std::filesystem::path metrics;   ///< Prometheus text file; empty: none
     std::filesystem::path snapshots; ///< folder; empty: no snapshots, no button for them
     bool watchdog = true;            ///< a parent process starts the mirror again
-    double stall_s = 3.0;            ///< no sign of life for so long: it is started again
+    double stall_s = 1.5;            ///< no sign of life for so long: it is started again
     double operator_line_s = 20.0;   ///< how long a note stands at the screen's foot
 };
 

@@ -28,6 +28,14 @@ Display::Display(const KioskConfig& config, bool headless) {
     picture_ = std::make_unique<LivePicture>(context);
 }
 
+bool Display::lost() const {
+    return lost_ || (window_ && window_->lost());
+}
+
+void Display::lose() {
+    lost_ = true;
+}
+
 bool Display::poll() {
     return !window_ || window_->poll();
 }

@@ -29,12 +29,18 @@ class Display {
     [[nodiscard]] render::WindowInput take_input();
     void show();
 
+    /// Nothing can be drawn any more: make another one.
+    [[nodiscard]] bool lost() const;
+    /// As if it were; for tests of faults.
+    void lose();
+
   private:
     std::unique_ptr<render::Window> window_;
     std::unique_ptr<render::Context> offscreen_;
     std::unique_ptr<render::Screen> screen_;
     std::unique_ptr<render::Canvas> canvas_;
     std::unique_ptr<LivePicture> picture_;
+    bool lost_ = false;
 };
 
 } // namespace toile::apps::kiosk

@@ -52,22 +52,24 @@ ScreenTimes times_of(const KioskConfig& config) {
 
 Kiosk::Kiosk(KioskRun run, const GlobalOptions& global)
     : run_(std::move(run)), texts_(Texts::load(run_.config.language)),
-      articles_(read_articles(run_.config)), tailor_(global, run_.realtime || !run_.headless,
-                                                     !(run_.realtime || !run_.headless), run_.safe),
+      articles_(read_articles(run_.config)),
+      tailor_(global, run_.realtime || !run_.headless, !(run_.realtime || !run_.headless),
+              run_.safe || run_.stock),
       scribe_(!(run_.realtime || !run_.headless)),
       feed_(tailor_, run_.config.source, run_.config.people, run_.config.camera,
             run_.realtime || !run_.headless, run_.frames > 0),
       visitors_(tailor_, run_.config.people, run_.config.away_s),
       screens_(times_of(run_.config), run_.config.measure, run_.safe),
-      pointer_({run_.config.dwell_s}), scale_(1.0f), live_(run_.realtime || !run_.headless) {
+      pointers_{Pointer({run_.config.dwell_s}), Pointer({run_.config.dwell_s})}, scale_(1.0f),
+      live_(run_.realtime || !run_.headless) {
     display_ = std::make_unique<Display>(run_.config, run_.headless);
     display_->picture().spoil(run_.spoil);
     load_thumbnails();
     if (live_) watch_ = std::make_unique<CatalogueWatch>(articles_, kLookEvery_s);
     metrics_.restarts = run_.restarts;
     if (run_.restarts > 0)
-        note_fault(Fault::crash,
-                   texts_.with(Text::restarted, {{"count", std::to_string(run_.restarts)}}));
+        note_fault(Fault::crash, texts_.with(run_.stock ? Text::stock_plugins : Text::restarted,
+                                             {{"count", std::to_string(run_.restarts)}}));
 }
 
 Kiosk::~Kiosk() {
@@ -82,8 +84,9 @@ void Kiosk::note_fault(Fault fault, std::string words) {
         notes_.pop_front();
 }
 
-void Kiosk::beat() const {
-    if (run_.heartbeat >= 0) (void)!write(run_.heartbeat, "+", 1);
+void Kiosk::beat(LifeSign sign) const {
+    const char byte = static_cast<char>(sign);
+    if (run_.heartbeat >= 0) (void)!write(run_.heartbeat, &byte, 1);
 }
 
 void Kiosk::run() {
@@ -101,7 +104,6 @@ bool Kiosk::frame() {
     if (!display_->poll() || quit_ || host::interrupt_flag()) return false;
     if (run_.frames > 0 && number_ >= run_.frames) return false;
     fresh_ = screens_.now() != ScreenName::safe && feed_.next(people_, now_s_);
-    if (fresh_) source_time_.add(pipeline::wall_seconds() - began_s);
     picture_s_ = 0.0;
     if (feed_.ended()) return false;
     if (live_ && !fresh_ && feed_.up() && screens_.now() != ScreenName::safe) {
@@ -136,33 +138,45 @@ bool Kiosk::frame() {
     take_results();
     if (fresh_ && screens_.now() == ScreenName::mirror)
         visitors_.step(clock_, live_ ? kLongestLive_s : kLongest_s);
-    if (fresh_ && live_ && clock_offset_s_)
-        state_latency_.add(pipeline::wall_seconds() - picture_s_ - *clock_offset_s_ -
-                           1e-9 * static_cast<double>(people_.timestamp_ns));
     const double drawing_s = pipeline::wall_seconds();
     try {
-        draw();
+        if (run_.draw) draw();
     } catch (const Error& e) {
         rebuild_display(e.what());
     }
-    const double ended_s = pipeline::wall_seconds();
-    draw_time_.add(ended_s - drawing_s + picture_s_);
-    if (fresh_) {
-        frame_time_.add(ended_s - began_s);
-        compute_time_.add(drawing_s - began_s - picture_s_);
-        if (live_ && clock_offset_s_)
-            picture_latency_.add(ended_s - *clock_offset_s_ -
-                                 1e-9 * static_cast<double>(people_.timestamp_ns));
-        if (live_) metrics_.picture_scale = static_cast<double>(scale_.add(ended_s - began_s));
-    }
+    if (fresh_) note_times(began_s, drawing_s, pipeline::wall_seconds());
     clock_.end_frame();
+    if (run_.draw && number_ == kWarmUpFrame) {
+        beat(LifeSign::patience);
+        display_->picture().warm_up();
+    }
     beat();
-    if (number_ == kWarmUpFrame) display_->picture().warm_up();
     ++number_;
     ++metrics_.frames;
     write_metrics(false);
     pace(began_s);
     return true;
+}
+
+// Figures of a frame of the camera; what garments take, while somebody wears some.
+void Kiosk::note_times(double began_s, double drawing_s, double ended_s) {
+    const auto& all = visitors_.all();
+    const bool dressed =
+        screens_.now() == ScreenName::mirror &&
+        std::any_of(all.begin(), all.end(), [](const Shopper& s) { return s.looks[0] && s.here; });
+    const double captured_s =
+        clock_offset_s_.value_or(0.0) + 1e-9 * static_cast<double>(people_.timestamp_ns);
+    frame_time_.add(ended_s - began_s);
+    draw_time_.add(ended_s - drawing_s + picture_s_);
+    if (dressed) {
+        compute_time_.add(drawing_s - began_s - picture_s_);
+        if (state_at_s_ > 0.0) interval_time_.add(drawing_s - state_at_s_);
+    }
+    if (dressed && live_) state_latency_.add(drawing_s - picture_s_ - captured_s);
+    if (live_) picture_latency_.add(ended_s - captured_s);
+    if (live_ && run_.draw)
+        metrics_.picture_scale = static_cast<double>(scale_.add(ended_s - began_s));
+    state_at_s_ = dressed ? drawing_s : 0.0;
 }
 
 // Without a camera nothing paces the loop.
@@ -172,25 +186,26 @@ void Kiosk::pace(double began_s) const {
     if (left > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(left));
 }
 
+void Kiosk::look_at_clock(double wall_s, double captured_s) {
+    const double passed_s = 1e-9 * static_cast<double>(people_.timestamp_ns - last_ns_);
+    const bool on = camera_frames_ > 0 && people_.sequence > last_sequence_;
+    // A mirror that was not let run for a while has no camera with a wrong clock.
+    const double meant_s = live_ ? people_.taken_s - last_taken_s_ : 0.0;
+    last_taken_s_ = people_.taken_s;
+    const bool jumped = on && (passed_s <= 0.0 || passed_s - meant_s > kClockJump_s);
+    if (camera_frames_ > 0) longest_gap_s_ = std::max(longest_gap_s_, wall_s - last_frame_s_);
+    if (camera_frames_ == 0) first_frame_s_ = wall_s;
+    if (on) metrics_.dropped += people_.sequence - last_sequence_ - 1;
+    if (jumped) note_fault(Fault::clock, texts_[Text::clock_changed]);
+    // The least delay seen stands for none: when capture and wall began together is not told.
+    if (!on || jumped || !clock_offset_s_) clock_offset_s_ = people_.taken_s - captured_s;
+    clock_offset_s_ = std::min(*clock_offset_s_, people_.taken_s - captured_s);
+}
+
 void Kiosk::take_frame(double dt_s) {
     const pipeline::SensorFrame& pictures = feed_.pictures();
     const double wall_s = pipeline::wall_seconds();
-    const double captured_s = 1e-9 * static_cast<double>(people_.timestamp_ns);
-    if (camera_frames_ > 0) {
-        longest_gap_s_ = std::max(longest_gap_s_, wall_s - last_frame_s_);
-        if (people_.sequence > last_sequence_ + 1)
-            metrics_.dropped += people_.sequence - last_sequence_ - 1;
-        const double passed_s = 1e-9 * static_cast<double>(people_.timestamp_ns - last_ns_);
-        if (last_ns_ >= 0 && feed_.up() && people_.sequence > last_sequence_ &&
-            (passed_s <= 0.0 || passed_s > kClockJump_s))
-            note_fault(Fault::clock, texts_[Text::clock_changed]);
-    } else {
-        first_frame_s_ = wall_s;
-    }
-    // The least delay seen stands for none: when capture and wall began together is not told.
-    if (!clock_offset_s_ || people_.sequence <= last_sequence_)
-        clock_offset_s_ = wall_s - captured_s;
-    clock_offset_s_ = std::min(*clock_offset_s_, wall_s - captured_s);
+    look_at_clock(wall_s, 1e-9 * static_cast<double>(people_.timestamp_ns));
     ++camera_frames_;
     last_ns_ = people_.timestamp_ns;
     last_sequence_ = people_.sequence;
@@ -201,7 +216,7 @@ void Kiosk::take_frame(double dt_s) {
     visitors_.order_waiting(articles_);
     if (measuring_ == Measuring::looking) turn_to_measure(dt_s);
     const double picture_began_s = pipeline::wall_seconds();
-    give_picture(pictures, dt_s);
+    if (run_.draw) give_picture(pictures, dt_s);
     picture_s_ = pipeline::wall_seconds() - picture_began_s;
 }
 
@@ -252,18 +267,23 @@ void Kiosk::take_results() {
                        texts_.with(Text::garment_refused,
                                    {{"id", result.order.article.id}, {"why", result.error}}));
     }
+    take_faults();
+}
+
+// Plugins that were switched off under what somebody wears: each is said once.
+void Kiosk::take_faults() {
     for (Shopper& shopper : visitors_.all())
-        for (std::optional<WornLook>& look : shopper.looks)
-            if (look)
-                for (const std::string& fault : look->person->faults()) {
-                    const std::string words = texts_.with(Text::plugin_off, {{"why", fault}});
-                    const bool said = std::any_of(notes_.begin(), notes_.end(),
-                                                  [&](const Note& n) { return n.words == words; });
-                    if (!said) note_fault(Fault::plugin, words);
-                }
+        for (std::optional<WornLook>& look : shopper.looks) {
+            if (!look) continue;
+            const std::vector<std::string> faults = look->person->faults();
+            for (; look->faults_said < faults.size(); ++look->faults_said)
+                note_fault(Fault::plugin,
+                           texts_.with(Text::plugin_off, {{"why", faults[look->faults_said]}}));
+        }
 }
 
 void Kiosk::wear_on(Shopper& shopper, DressResult result) {
+    beat(LifeSign::patience); // what it is drawn with may be new to the driver
     WornLook look;
     look.choice = result.order.choice;
     look.advice = result.advice;

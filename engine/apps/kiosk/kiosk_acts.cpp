@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 namespace toile::apps::kiosk {
 
@@ -14,12 +15,10 @@ void Kiosk::act(Action action, std::uint32_t person) {
     Shopper* shopper = person == 0 ? visitors_.first() : visitors_.find(person);
     if (action == Action::agree && shopper != nullptr) {
         shopper->agreed = true;
-        if (screens_.now() == ScreenName::mirror) { // a second one, who joins
-            visitors_.order(*shopper, 0, articles_);
-            ++metrics_.visits;
-            return;
-        }
+        if (screens_.now() == ScreenName::mirror) return join(*shopper);
     }
+    if (action == Action::finish && shopper != nullptr && arrangement() == Arrangement::two_people)
+        return leave(*shopper);
     if (action == Action::snapshot && run_.config.snapshots.empty()) return;
     const ScreenName before = screens_.now();
     screens_.act(action);
@@ -27,6 +26,25 @@ void Kiosk::act(Action action, std::uint32_t person) {
     if (action == Action::decline && screens_.now() != before) ++metrics_.declined;
     for (const Effect effect : screens_.take_effects())
         perform(effect, shopper);
+}
+
+// A second one, who wants clothes too.
+void Kiosk::join(Shopper& shopper) {
+    if (screens_.comparing()) {
+        screens_.act(Action::compare);
+        for (const Effect effect : screens_.take_effects())
+            perform(effect, visitors_.first());
+    }
+    visitors_.order(shopper, 0, articles_);
+    ++metrics_.visits;
+}
+
+// One of two is done; the other one's visit goes on.
+void Kiosk::leave(const Shopper& shopper) {
+    const std::uint32_t person = shopper.id;
+    for (Pointer& pointer : pointers_)
+        pointer.forget();
+    visitors_.erase(person);
 }
 
 void Kiosk::wear() {
@@ -58,6 +76,7 @@ void Kiosk::perform(Effect effect, Shopper* shopper) {
         turn_.erase();
         visitors_.erase();
         display_->picture().erase();
+        feed_.forget();
         people_.people.clear();
         people_.shapes.clear();
         measuring_ = Measuring::not_begun;
@@ -66,6 +85,7 @@ void Kiosk::perform(Effect effect, Shopper* shopper) {
         floor_.reset();
         break;
     case Effect::freeze:
+        beat(LifeSign::patience); // the studio is drawn for the first time
         azimuth_deg_ = 0.0f;
         azimuth_goal_deg_ = 180.0f;
         frozen_s_ = 0.0;
@@ -107,7 +127,8 @@ void Kiosk::perform(Effect effect, Shopper* shopper) {
 
 void Kiosk::inject(const std::string& fault) {
     if (fault == "camera") feed_.lose("unplugged by the script", now_s_);
-    if (fault == "picture") rebuild_display("lost by the script");
+    if (fault == "picture") display_->lose();
+    if (fault == "clock") feed_.jump_clock(std::exchange(clock_jump_s_, -1.6 * clock_jump_s_));
     if (fault == "disk") scribe_.fail_next();
     if (fault == "crash" && run_.restarts == 0) std::abort();
     if (fault == "stall" && run_.restarts == 0)
@@ -116,7 +137,16 @@ void Kiosk::inject(const std::string& fault) {
 }
 
 void Kiosk::take_script() {
-    for (const ScriptStep& step : run_.script.at(number_)) {
+    const std::vector<ScriptStep>& steps = run_.script.steps;
+    script_began_s_.resize(steps.size(), -1.0);
+    std::vector<ScriptStep> due = run_.script.between(script_began_s_, script_at_s_, now_s_);
+    script_at_s_ = now_s_;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (steps[i].frame == number_) {
+            script_began_s_[i] = now_s_;
+            due.push_back(steps[i]);
+        }
+    for (const ScriptStep& step : due) {
         if (step.kind == ScriptStep::Kind::act) {
             const auto& all = visitors_.all();
             if (step.person == 2 && all.size() < 2) continue;
@@ -130,26 +160,35 @@ void Kiosk::take_script() {
 void Kiosk::take_input(double dt_s) {
     const render::WindowInput input = display_->take_input();
     using Key = render::WindowInput::Key;
+    follow_reach();
     const std::vector<Button> shown = buttons();
+    const auto press = [this](const Target& target) { act(target.action, target.person); };
     for (const Vec2f& tap : input.taps)
-        act(Pointer::tap(tap, shown), 0);
-    for (const auto& press : input.keys) {
+        press(Pointer::tap(tap, shown));
+    Pointer& keys = pointers_[0];
+    for (const auto& key : input.keys) {
         if (screens_.now() == ScreenName::setup) {
-            setup_key(press);
+            setup_key(key);
             continue;
         }
-        if (press.key == Key::letter && press.letter == 'o') act(Action::open_setup, 0);
-        if (press.key == Key::left || press.key == Key::up) pointer_.move_focus(-1, shown);
-        if (press.key == Key::right || press.key == Key::down) pointer_.move_focus(1, shown);
-        if (press.key == Key::enter || press.key == Key::space) act(pointer_.press_focus(shown), 0);
-        if (press.key == Key::escape)
+        if (key.key == Key::letter && key.letter == 'o') act(Action::open_setup, 0);
+        if (key.key == Key::left || key.key == Key::up) keys.move_focus(-1, shown);
+        if (key.key == Key::right || key.key == Key::down) keys.move_focus(1, shown);
+        if (key.key == Key::enter || key.key == Key::space) press(keys.press_focus(shown));
+        if (key.key == Key::escape)
             act(screens_.now() == ScreenName::consent ? Action::decline : Action::finish, 0);
     }
     if (!fresh_ || screens_.now() == ScreenName::setup) return;
-    const std::vector<Hand> hands =
-        visitors_.hands([this](const Vec3f& p) { return on_screen(p); });
-    const Action pressed = pointer_.hover(hands, shown, dt_s);
-    if (pressed != Action::invalid) act(pressed, pointer_.person());
+    const std::vector<Hand> all = hands();
+    for (Pointer& pointer : pointers_) {
+        std::vector<Hand> own;
+        for (const Hand& hand : all)
+            if (&pointer_of(hand.person) == &pointer) own.push_back(hand);
+        const Action pressed = pointer.hover(own, shown, dt_s);
+        if (pressed == Action::invalid) continue;
+        act(pressed, pointer.person());
+        break; // the buttons may be others now
+    }
 }
 
 void Kiosk::setup_key(const render::WindowInput::Press& press) {

@@ -17,7 +17,8 @@ namespace {
 
 struct KioskOptions {
     std::string config, source, language, orientation, screen, out, script, preview, report, spoil;
-    bool headless = false, realtime = false, safe = false, no_watchdog = false;
+    bool headless = false, realtime = false, safe = false, stock = false, no_watchdog = false,
+         no_draw = false;
     std::uint64_t frames = 0, restarts = 0;
     int heartbeat = -1;
 };
@@ -54,6 +55,8 @@ kiosk::KioskRun run_of(const KioskOptions& options) {
     out.out = options.out;
     if (!options.script.empty()) out.script = kiosk::load_script(options.script);
     out.frames = options.frames;
+    out.draw = !options.no_draw;
+    out.stock = options.stock;
     out.safe = options.safe;
     out.restarts = options.restarts;
     out.heartbeat = options.heartbeat;
@@ -79,6 +82,7 @@ std::vector<std::string> child_arguments(const KioskOptions& options, const Glob
     add("--spoil", options.spoil);
     if (options.headless) out.emplace_back("--headless");
     if (options.realtime) out.emplace_back("--realtime");
+    if (options.no_draw) out.emplace_back("--no-draw");
     if (options.frames > 0) add("--frames", std::to_string(options.frames));
     for (const std::filesystem::path& folder : global.plugin_folders)
         add("--plugins", folder.string());
@@ -104,6 +108,7 @@ int kiosk_command(const KioskOptions& options, const GlobalOptions& global) {
         throw UsageError("kiosk: the script asks for pictures; --out DIR says where");
     if (!run.out.empty() && run.out.extension() != ".png")
         std::filesystem::create_directories(run.out);
+    if (!run.draw && !run.headless) throw UsageError("kiosk --no-draw needs --headless");
     const bool live = !run.headless || run.realtime;
     if (options.heartbeat < 0 && live && run.config.watchdog && !options.no_watchdog)
         return kiosk::watch(child_arguments(options, global), {run.config.stall_s});
@@ -149,12 +154,15 @@ void add_kiosk_commands(CLI::App& app, const GlobalOptions& global) {
         ->type_name("SCREEN");
     command->add_option("--report", options->report, "Figures of the run, as JSON")
         ->type_name("FILE");
+    command->add_flag("--no-draw", options->no_draw,
+                      "Headless: all but pictures, to measure the rest with --report");
     command->add_flag("--no-watchdog", options->no_watchdog, "One process, not started again");
     // Between the watchdog and the mirror.
     command->add_option("--spoil", options->spoil, "Draws the camera's view wrongly on purpose")
         ->check(CLI::IsMember({"shift", "shadows", "occlusion"}))
         ->type_name("shift|shadows|occlusion")
         ->group("For tests of pictures");
+    command->add_flag("--stock", options->stock)->group("");
     command->add_flag("--safe", options->safe)->group("");
     command->add_option("--restarts", options->restarts)->group("");
     command->add_option("--heartbeat", options->heartbeat)->group("");

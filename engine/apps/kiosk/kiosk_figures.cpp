@@ -37,7 +37,8 @@ void Kiosk::write_report() {
     json["longest_gap_s"] = longest_gap_s_;
     put("frame_wall", frame_time_);
     put("compute_wall", compute_time_);
-    put("source_wall", source_time_);
+    put("state_interval_wall", interval_time_);
+    put("source_wall", feed_.time());
     put("drawing_wall", draw_time_);
     if (live_) put("latency_garment_state", state_latency_);
     if (live_) put("latency_picture", picture_latency_);

@@ -50,6 +50,7 @@ void Kiosk::load_thumbnails() {
 }
 
 void Kiosk::rebuild_display(const std::string& why) {
+    beat(LifeSign::patience);
     for (Shopper& shopper : visitors_.all())
         for (std::optional<WornLook>& look : shopper.looks)
             if (look) look->meshes.reset();
@@ -91,38 +92,9 @@ std::optional<Vec2f> Kiosk::on_screen(const Vec3f& world) const {
                  (pixel->y() + 0.5f - part.y) / part.height * place.to.height);
 }
 
-std::vector<Button> Kiosk::buttons() {
-    std::vector<Action> offers = screens_.offers();
-    if (run_.config.snapshots.empty()) std::erase(offers, Action::snapshot);
-    const Shopper* shopper = visitors_.first();
-    if (shopper != nullptr && articles_[shopper->wanted[0].article].colours.size() < 2)
-        std::erase(offers, Action::next_colour);
-    // Somebody else who has not been asked yet.
-    const auto& all = visitors_.all();
-    if (screens_.now() == ScreenName::mirror &&
-        std::any_of(all.begin(), all.end(), [](const Shopper& s) { return s.here && !s.agreed; }))
-        offers.push_back(Action::agree);
-    std::optional<Reach> now;
-    if (shopper != nullptr)
-        now = Visitors::reach(*shopper, [this](const Vec3f& p) { return on_screen(p); });
-    // Buttons stay where they are while somebody stands there, and follow who goes elsewhere.
-    if (screens_.now() != last_screen_) reach_.reset();
-    const bool off =
-        now && reach_ && (now->shoulders - reach_->shoulders).norm() > 0.22f * now->metre;
-    reach_off_s_ = off && fresh_ ? reach_off_s_ + 1.0 / 30.0 : off ? reach_off_s_ : 0.0;
-    if (now && (!reach_ || reach_off_s_ > 0.8)) {
-        if (reach_) pointer_.forget();
-        reach_ = now;
-        reach_off_s_ = 0.0;
-    }
-    return lay_out(screens_.now(), offers, display_->screen().width(), display_->screen().height(),
-                   reach_);
-}
-
-std::string Kiosk::advice_line(const Shopper& shopper) const {
-    const std::optional<WornLook>& look = shopper.looks[screens_.comparing() ? 1 : 0];
-    if (!look || look->choice != shopper.wanted[screens_.comparing() ? 1 : 0])
-        return texts_[Text::dressing];
+std::string Kiosk::advice_line(const Shopper& shopper, std::size_t which) const {
+    const std::optional<WornLook>& look = shopper.looks[which];
+    if (!look || look->choice != shopper.wanted[which]) return texts_[Text::dressing];
     const SizeAdvice& advice = look->advice;
     if (!advice.measured) return texts_.with(Text::not_measured, {{"size", advice.size}});
     if (advice.chosen) return texts_.with(Text::size, {{"size", advice.size}});
@@ -168,11 +140,13 @@ ScreenView Kiosk::view() {
     out.screen = screens_.now();
     out.seconds = screens_.seconds();
     out.buttons = buttons();
-    out.rested_on = pointer_.rested_on();
-    out.progress = pointer_.progress();
-    out.focus = pointer_.focus();
+    out.arrangement = arrangement();
+    for (const Pointer& pointer : pointers_)
+        if (pointer.rested_on().action != Action::invalid)
+            out.rests.push_back({pointer.rested_on(), pointer.progress()});
+    out.focus = pointers_[0].focus();
     if (out.screen != ScreenName::setup && out.screen != ScreenName::attract)
-        for (const Hand& hand : visitors_.hands([this](const Vec3f& p) { return on_screen(p); }))
+        for (const Hand& hand : hands())
             if (hand.raised) out.hands.push_back(hand.place);
     if (!out.hands.empty() || out.focus) hand_at_s_ = now_s_;
     out.attention =
@@ -185,16 +159,15 @@ ScreenView Kiosk::view() {
     out.turned = {turn_.has(Side::front), turn_.has(Side::left), turn_.has(Side::back),
                   turn_.has(Side::right)};
     out.carousel = carousel_;
-    out.comparing = screens_.comparing();
-    if (const Shopper* shopper = visitors_.first()) {
-        const std::size_t look = out.comparing ? 1 : 0;
-        const Choice& wanted = shopper->wanted[look];
-        out.chosen = wanted.article;
+    const std::size_t look = screens_.comparing() ? 1 : 0;
+    if (const Shopper* shopper = visitors_.first()) out.chosen = shopper->wanted[look].article;
+    for (const Shopper& shopper : visitors_.all()) {
         const std::string size =
-            shopper->looks[look] ? shopper->looks[look]->advice.size : std::string("...");
-        out.size_button = texts_.with(Text::size, {{"size", size}});
-        out.advice = advice_line(*shopper);
+            shopper.looks[look] ? shopper.looks[look]->advice.size : std::string("...");
+        out.size_buttons[shopper.id] = texts_.with(Text::size, {{"size", size}});
     }
+    if (out.screen == ScreenName::mirror || out.screen == ScreenName::frozen)
+        out.captions = captions();
     if (shopper_note_.until_s > now_s_) out.note = shopper_note_.words;
     if (out.screen == ScreenName::setup) out.setup = setup_lines();
     while (!notes_.empty() && notes_.front().until_s < now_s_)
@@ -232,16 +205,16 @@ void Kiosk::hide_cloth(bool second) {
 void Kiosk::draw_picture() {
     LivePicture& picture = display_->picture();
     if (picture.empty()) return;
-    const bool two = screens_.comparing() && screens_.now() == ScreenName::mirror;
+    const bool two = arrangement() == Arrangement::two_looks;
+    const Stage stage = stage_of(
+        arrangement(), display_->screen().width(), display_->screen().height(),
+        static_cast<float>(picture.camera_width()) / static_cast<float>(picture.camera_height()));
     for (std::size_t look = 0; look < (two ? 2u : 1u); ++look) {
         if ((fresh_ || two) && feed_.up()) hide_cloth(look == 1);
         picture.draw_mirror(worn_meshes(look == 1), scale_.now());
-        render::Rect to = whole(display_->screen());
-        render::Placement place = placement(to);
+        render::Placement place = placement(stage.pictures[look]);
+        if (stage.panel) place.scale = 1.0f;
         if (two) {
-            to.width *= 0.5f;
-            to.x = look == 0 ? 0.0f : to.width;
-            place.to = to;
             // Both halves show the shopper in their middle.
             if (const Shopper* shopper = visitors_.first()) {
                 const float* hips = shopper->frame.joints[0].position;
@@ -304,9 +277,16 @@ void Kiosk::draw_frozen() {
 }
 
 void Kiosk::draw() {
+    if (display_->lost()) throw Error("the graphics context is gone");
     render::Screen& screen = display_->screen();
     screen.clear({24, 30, 34, 255});
-    if (screens_.now() != last_screen_) pointer_.forget();
+    if (screens_.now() != last_screen_) {
+        for (Pointer& pointer : pointers_)
+            pointer.forget();
+        for (Shopper& shopper : visitors_.all())
+            shopper.reach.reset();
+        follow_reach();
+    }
     if (screens_.now() == ScreenName::mirror || screens_.now() == ScreenName::setup) draw_picture();
     if (screens_.now() == ScreenName::frozen) draw_frozen();
     if (snapshot_) keep_picture();

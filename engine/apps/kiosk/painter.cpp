@@ -1,5 +1,7 @@
 #include "apps/kiosk/painter.h"
 
+#include "apps/kiosk/garment_cards.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -86,7 +88,7 @@ class Painter {
         for (std::size_t i = 0; i < count && period > 0.0f; ++i) {
             float x = static_cast<float>(i) * (wide + gap) - std::fmod(moved, period) - period;
             for (; x < w_; x += period)
-                if (x > -wide) garment(view_.carousel[i], {x, row, wide, tall}, false);
+                if (x > -wide) draw_card(canvas_, view_.carousel[i], {x, row, wide, tall}, false);
         }
         canvas_.paragraph({0.5f * w_, 0.10f * h_}, sizes_.body.width, texts_[Text::attract_title],
                           title());
@@ -183,39 +185,24 @@ class Painter {
                           texts_[done ? Text::measure_done : Text::measure_working], title());
     }
 
-    void garment(const CarouselItem& item, const Rect& place, bool chosen) {
-        canvas_.fill(place, {240, 240, 238, 255}, 0.05f * place.width);
-        if (item.thumbnail != render::PictureId::none)
-            canvas_.picture(item.thumbnail, place.inset(0.03f * place.width));
-        if (chosen) canvas_.outline(place, kAccent, 0.05f * place.width, 0.05f * place.width);
-    }
-
     void mirror() {
-        // The chosen garment between its neighbours, at the foot of the screen.
-        const float tall = 0.10f * h_;
-        const float wide = 0.75f * tall;
-        const float words_y = h_ - sizes_.margin - 1.9f * sizes_.text;
-        const auto count = static_cast<int>(view_.carousel.size());
-        const int beside = std::min((count - 1) / 2, w_ > h_ ? 3 : 2);
+        const Stage stage = stage_of(view_.arrangement, canvas_.width(), canvas_.height());
+        if (stage.panel) canvas_.shade(*stage.panel, kTop, kBottom);
         if (view_.screen == ScreenName::frozen) {
             heading(texts_[Text::frozen_title], sizes_.margin);
-        } else if (count > 0) {
-            const float middle = words_y - 0.55f * sizes_.text - 0.5f * tall;
-            for (int i = -beside; i <= beside; ++i) {
-                const int index = (static_cast<int>(view_.chosen) + i + count) % count;
-                const float scale = i == 0 ? 1.0f : 0.72f;
-                const Vec2f centre(0.5f * w_ + static_cast<float>(i) * 0.95f * wide, middle);
-                garment(view_.carousel[static_cast<std::size_t>(index)],
-                        {centre.x() - 0.5f * scale * wide, centre.y() - 0.5f * scale * tall,
-                         scale * wide, scale * tall},
-                        i == 0);
-            }
-            heading(view_.carousel[view_.chosen].name, sizes_.margin);
+        } else if (view_.arrangement == Arrangement::two_looks) {
+            const float x = 0.5f * w_;
+            const Rect& picture = stage.pictures[0];
+            if (h_ > w_)
+                canvas_.fill({x - 2.0f, 0.0f, 4.0f, picture.y + picture.height},
+                             {255, 255, 255, 160});
+            draw_carousel(canvas_, view_, stage.carousel);
+        } else if (view_.arrangement == Arrangement::one) {
+            draw_neighbours(canvas_, view_);
         }
-        if (view_.comparing)
-            canvas_.fill({0.5f * w_ - 2.0f, 0.1f * h_, 4.0f, 0.7f * h_}, {255, 255, 255, 160});
-        const std::string& words = view_.note.empty() ? view_.advice : view_.note;
-        if (!words.empty()) heading(words, words_y);
+        for (const Caption& caption : view_.captions)
+            draw_caption(canvas_, caption);
+        if (!view_.note.empty()) heading(view_.note, h_ - sizes_.margin - 1.9f * sizes_.text);
     }
 
     // One line on a panel, centred.
@@ -252,8 +239,8 @@ class Painter {
         canvas_.ring({0.5f * w_, 0.93f * h_}, 0.04f * h_, 1.0f, kAccent, 0.003f * h_);
     }
 
-    [[nodiscard]] std::string words_of(Action action) const {
-        switch (action) {
+    [[nodiscard]] std::string words_of(const Button& button) const {
+        switch (button.action) {
         case Action::agree:
             return texts_[Text::agree];
         case Action::decline:
@@ -267,7 +254,8 @@ class Painter {
         case Action::previous_garment:
             return texts_[Text::previous_garment];
         case Action::next_size:
-            return view_.size_button;
+            return view_.size_buttons.contains(button.person) ? view_.size_buttons.at(button.person)
+                                                              : std::string();
         case Action::next_colour:
             return texts_[Text::colour];
         case Action::freeze:
@@ -278,7 +266,8 @@ class Painter {
         case Action::close_setup:
             return texts_[Text::live];
         case Action::compare:
-            return texts_[view_.comparing ? Text::compare_done : Text::compare];
+            return texts_[view_.arrangement == Arrangement::two_looks ? Text::compare_done
+                                                                      : Text::compare];
         case Action::snapshot:
             return texts_[Text::snapshot];
         case Action::finish:
@@ -290,11 +279,15 @@ class Painter {
 
     void draw_button(const Button& button) {
         const Rect& r = button.rect;
-        const bool rested = button.action == view_.rested_on;
-        const bool focused = view_.focus && *view_.focus == button.action;
+        const Target target{button.action, button.person};
+        const auto rest = std::find_if(view_.rests.begin(), view_.rests.end(),
+                                       [&](const Rest& one) { return one.target == target; });
+        const bool rested = rest != view_.rests.end();
+        const bool focused = view_.focus && *view_.focus == target;
         const float round = 0.5f * r.height;
         // Over the picture buttons step back until a hand is raised.
-        const bool over = shows_picture(view_.screen);
+        const bool over = shows_picture(view_.screen) &&
+                          !stage_of(view_.arrangement, canvas_.width(), canvas_.height()).panel;
         const float shown = over ? 0.35f + 0.65f * view_.attention : 1.0f;
         const auto faded = [&](Ink ink) {
             ink.alpha = static_cast<std::uint8_t>(shown * static_cast<float>(ink.alpha));
@@ -302,14 +295,14 @@ class Painter {
         };
         canvas_.fill(r, faded(button.action == Action::agree ? Ink{38, 92, 70, 232} : kButton),
                      round);
-        if (rested && view_.progress > 0.0f) {
-            const float filled = std::max(r.height, view_.progress * r.width);
+        if (rested && rest->progress > 0.0f) {
+            const float filled = std::max(r.height, rest->progress * r.width);
             canvas_.fill({r.x, r.y, filled, r.height}, {244, 186, 96, 150}, round);
         }
         canvas_.outline(r, rested || focused ? kAccent : faded({255, 255, 255, 110}),
                         (rested || focused ? 0.05f : 0.025f) * r.height, round);
         TextStyle style{sizes_.text, kWhite, Align::middle, true};
-        const std::string words = words_of(button.action);
+        const std::string words = words_of(button);
         if (canvas_.text_width(words, style) <= r.width - 0.35f * r.height ||
             words.find(' ') == std::string::npos) {
             canvas_.text({r.centre().x(), r.centre().y() - 0.56f * style.size}, words, style);
@@ -323,8 +316,11 @@ class Painter {
 
     void draw_hand(const Vec2f& hand) {
         canvas_.ring(hand, 0.020f * h_, 1.0f, {255, 255, 255, 220}, 0.004f * h_);
-        if (view_.progress > 0.0f)
-            canvas_.ring(hand, 0.026f * h_, view_.progress, kAccent, 0.008f * h_);
+        for (const Rest& rest : view_.rests)
+            for (const Button& button : view_.buttons)
+                if (Target{button.action, button.person} == rest.target && rest.progress > 0.0f &&
+                    button.rect.inset(-0.25f * button.rect.height).contains(hand))
+                    canvas_.ring(hand, 0.026f * h_, rest.progress, kAccent, 0.008f * h_);
         canvas_.disc(hand, 0.007f * h_, kAccent);
     }
 

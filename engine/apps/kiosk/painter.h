@@ -7,6 +7,7 @@
 #include "render/canvas.h"
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,27 @@ struct CarouselItem {
     std::string name;
 };
 
+/// What somebody wears, in words, above their buttons.
+struct Caption {
+    render::Rect place;
+    render::Align align = render::Align::middle;
+    std::string name = {};
+    std::string advice = {};
+};
+
+/// A button that a hand rests on, and the share of the dwell that is over.
+struct Rest {
+    Target target;
+    float progress = 0.0f;
+};
+
 struct ScreenView {
     ScreenName screen = ScreenName::attract;
+    Arrangement arrangement = Arrangement::one;
     double seconds = 0.0; ///< since the screen came up
     std::vector<Button> buttons;
-    Action rested_on = Action::invalid;
-    float progress = 0.0f; ///< of the dwell
-    std::optional<Action> focus;
+    std::vector<Rest> rests;
+    std::optional<Target> focus;
     float attention = 1.0f;   ///< [0, 1]: a hand is raised, or was a moment ago
     std::vector<Vec2f> hands; ///< raised ones, pixels
     bool declined = false;
@@ -36,11 +51,10 @@ struct ScreenView {
     std::array<bool, 4> turned{}; ///< front, left, back, right
 
     std::vector<CarouselItem> carousel;
-    std::size_t chosen = 0;  ///< of the carousel
-    std::string advice;      ///< the line on the size
-    std::string size_button; ///< words of the button that changes it
-    std::string note;        ///< to the shopper: a picture kept, a moment please
-    bool comparing = false;
+    std::size_t chosen = 0; ///< of the carousel
+    std::vector<Caption> captions;
+    std::map<std::uint32_t, std::string> size_buttons; ///< by Button::person: words
+    std::string note; ///< to the shopper: a picture kept, a moment please
 
     std::vector<std::string> setup; ///< lines of the operator's page
     std::vector<std::string> operator_lines;

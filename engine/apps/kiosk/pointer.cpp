@@ -3,32 +3,40 @@
 #include <algorithm>
 
 namespace toile::apps::kiosk {
+namespace {
 
-Action Pointer::under(std::span<const Hand> hands, std::span<const Button> buttons) {
-    Action found = Action::invalid;
+Target target_of(const Button& button) {
+    return {button.action, button.person};
+}
+
+} // namespace
+
+Target Pointer::under(std::span<const Hand> hands, std::span<const Button> buttons) {
+    Target found;
     std::uint32_t whose = 0;
     for (const Hand& hand : hands) {
         if (!hand.raised) continue;
         for (const Button& button : buttons) {
-            const bool own = button.action == target_;
+            if (button.person != 0 && button.person != hand.person) continue;
+            const bool own = target_of(button) == target_;
             const float slack = own ? options_.slack * button.rect.height : 0.0f;
             if (!button.rect.inset(-slack).contains(hand.place)) continue;
             if (own && hand.person == person_) return target_; // who came first keeps the button
-            if (found != Action::invalid) continue;
-            found = button.action;
+            if (found.action != Action::invalid) continue;
+            found = target_of(button);
             whose = hand.person;
         }
     }
-    if (found != Action::invalid) person_ = whose;
+    if (found.action != Action::invalid) person_ = whose;
     return found;
 }
 
 Action Pointer::hover(std::span<const Hand> hands, std::span<const Button> buttons, double dt_s) {
-    const Action now = under(hands, buttons);
-    if (now == Action::invalid) {
+    const Target now = under(hands, buttons);
+    if (now.action == Action::invalid) {
         off_s_ += dt_s;
         if (off_s_ > options_.forget_s) {
-            target_ = Action::invalid;
+            target_ = {};
             rested_s_ = 0.0;
             spent_ = false;
         }
@@ -36,7 +44,7 @@ Action Pointer::hover(std::span<const Hand> hands, std::span<const Button> butto
     }
     off_s_ = 0.0;
     if (now != target_) {
-        const bool stays = spent_ && target_ == Action::invalid;
+        const bool stays = spent_ && target_.action == Action::invalid;
         target_ = now;
         rested_s_ = 0.0;
         spent_ = stays;
@@ -46,13 +54,13 @@ Action Pointer::hover(std::span<const Hand> hands, std::span<const Button> butto
     if (rested_s_ < options_.dwell_s) return Action::invalid;
     spent_ = true;
     rested_s_ = 0.0;
-    return now;
+    return now.action;
 }
 
-Action Pointer::tap(const Vec2f& place, std::span<const Button> buttons) {
+Target Pointer::tap(const Vec2f& place, std::span<const Button> buttons) {
     for (const Button& button : buttons)
-        if (button.rect.contains(place)) return button.action;
-    return Action::invalid;
+        if (button.rect.contains(place)) return target_of(button);
+    return {};
 }
 
 void Pointer::move_focus(int by, std::span<const Button> buttons) {
@@ -63,23 +71,23 @@ void Pointer::move_focus(int by, std::span<const Button> buttons) {
     const auto count = static_cast<int>(buttons.size());
     int at = by > 0 ? -1 : 0;
     for (int i = 0; i < count; ++i)
-        if (focus_ && buttons[static_cast<std::size_t>(i)].action == *focus_) at = i;
-    focus_ = buttons[static_cast<std::size_t>(((at + by) % count + count) % count)].action;
+        if (focus_ && target_of(buttons[static_cast<std::size_t>(i)]) == *focus_) at = i;
+    focus_ = target_of(buttons[static_cast<std::size_t>(((at + by) % count + count) % count)]);
 }
 
-Action Pointer::press_focus(std::span<const Button> buttons) const {
+Target Pointer::press_focus(std::span<const Button> buttons) const {
     for (const Button& button : buttons)
-        if (focus_ && button.action == *focus_) return button.action;
-    return Action::invalid;
+        if (focus_ && target_of(button) == *focus_) return *focus_;
+    return {};
 }
 
 float Pointer::progress() const {
-    if (target_ == Action::invalid || spent_) return 0.0f;
+    if (target_.action == Action::invalid || spent_) return 0.0f;
     return std::clamp(static_cast<float>(rested_s_ / options_.dwell_s), 0.0f, 1.0f);
 }
 
 void Pointer::forget() {
-    target_ = Action::invalid;
+    target_ = {};
     rested_s_ = 0.0;
     off_s_ = 0.0;
     spent_ = true;

@@ -42,13 +42,20 @@ void preview(const KioskConfig& config, const std::string& screen,
     visit.act(Action::open_setup);
     if (view.screen == ScreenName::setup) offers = visit.offers();
     if (config.snapshots.empty()) std::erase(offers, Action::snapshot);
-    view.buttons = lay_out(view.screen, offers, config.width, config.height, std::nullopt);
+    view.buttons = lay_out(offers, config.width, config.height, {});
     view.seconds = 2.6;
     view.wanted = Side::left;
     view.turned = {true, false, false, false};
     view.measuring = Measuring::looking;
-    view.advice = texts.with(Text::fits, {{"size", "M"}});
-    view.size_button = texts.with(Text::size, {{"size", "M"}});
+    view.size_buttons[0] = texts.with(Text::size, {{"size", "M"}});
+    if (view.screen == ScreenName::mirror || view.screen == ScreenName::frozen) {
+        const Measures sizes = measures(config.width, config.height);
+        const float wide = 0.34f * static_cast<float>(config.width);
+        view.captions.push_back({{sizes.edge, sizes.margin, wide, 0.0f},
+                                 render::Align::start,
+                                 view.carousel.empty() ? "" : view.carousel.front().name,
+                                 texts.with(Text::fits, {{"size", "M"}})});
+    }
     for (const Text words : {Text::setup_no_sensor, Text::setup_no_floor, Text::setup_keys})
         view.setup.push_back(texts[words]);
     render::Canvas& canvas = display.canvas();

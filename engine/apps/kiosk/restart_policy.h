@@ -7,6 +7,7 @@
 namespace toile::apps::kiosk {
 
 struct RestartOptions {
+    std::uint32_t stock = 2;   ///< so many: only plugins that came with the program
     std::uint32_t crashes = 3; ///< so many ...
     double within_s = 120.0;   ///< ... in this time: safe mode
     double pause_s = 0.2;      ///< before the first start again; doubled each time
@@ -22,21 +23,24 @@ class RestartPolicy {
 
     struct Decision {
         double pause_s = 0.0;
-        bool safe = false; ///< stock plugins only, a plain screen
+        bool stock = false; ///< stock plugins only: another one may be at fault
+        bool safe = false;  ///< the same, and a plain screen
     };
     /// The mirror crashed or stalled.
     Decision crashed(double now_s);
-    /// Is it time to leave safe mode?
+    /// Is it time to try everything again?
     [[nodiscard]] bool recovered(double now_s) const;
     void leave_safe_mode();
 
     [[nodiscard]] std::uint64_t restarts() const { return restarts_; }
+    [[nodiscard]] bool stock() const { return stock_; }
     [[nodiscard]] bool safe() const { return safe_; }
 
   private:
     RestartOptions options_;
     std::deque<double> times_; ///< of the last crashes
     std::uint64_t restarts_ = 0;
+    bool stock_ = false;
     bool safe_ = false;
 };
 

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace toile::apps::kiosk {
 namespace {
 
-constexpr std::array<const char*, 5> kFaults = {"camera", "picture", "disk", "crash", "stall"};
+constexpr std::array<const char*, 6> kFaults = {"camera", "clock", "picture",
+                                                "disk",   "crash", "stall"};
 constexpr std::int64_t kMostFrames = 100'000'000;
 
 ScriptStep read_step(JsonObject& json) {
@@ -38,12 +40,13 @@ ScriptStep read_step(JsonObject& json) {
         step.kind = Kind::fault;
         step.name = json.text("fault");
         if (std::find(kFaults.begin(), kFaults.end(), step.name) == kFaults.end())
-            throw json.error("fault", "is none of camera, picture, disk, crash and stall");
+            throw json.error("fault", "is none of camera, clock, picture, disk, crash and stall");
     }
     if (json.has("quit")) {
         ++kinds;
         step.kind = json.boolean("quit") ? Kind::quit : Kind::invalid;
     }
+    if (json.has("every_s")) step.every_s = json.number("every_s", 0.1, 86'400.0);
     if (kinds != 1 || step.kind == Kind::invalid)
         throw json.error("", "a step has one of act, picture, mask, fault and quit");
     json.finish();
@@ -56,6 +59,20 @@ std::vector<ScriptStep> Script::at(std::uint64_t frame) const {
     std::vector<ScriptStep> out;
     for (const ScriptStep& step : steps)
         if (step.frame == frame) out.push_back(step);
+    return out;
+}
+
+std::vector<ScriptStep> Script::between(const std::vector<double>& began_s, double before_s,
+                                        double now_s) const {
+    std::vector<ScriptStep> out;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const double every_s = steps[i].every_s;
+        if (every_s <= 0.0 || began_s[i] < 0.0) continue;
+        const double times = std::floor((now_s - began_s[i]) / every_s) -
+                             std::floor((before_s - began_s[i]) / every_s);
+        for (int k = 0; k < static_cast<int>(times); ++k)
+            out.push_back(steps[i]);
+    }
     return out;
 }
 

@@ -104,7 +104,15 @@ void Tailor::forget() {
     dressed_.clear();
     measured_.reset();
     seen_.clear();
+    forgotten_.clear();
     progress_ = 0.0;
+}
+
+void Tailor::forget(std::uint32_t person) {
+    const std::lock_guard lock(mutex_);
+    ++forgotten_[person];
+    std::erase_if(dressed_, [person](const DressResult& r) { return r.order.person == person; });
+    seen_.erase(person);
 }
 
 std::vector<DressResult> Tailor::take_dressed() {
@@ -208,16 +216,20 @@ DressResult Tailor::dressed(DressOrder order) {
 
 void Tailor::dress(DressOrder order) {
     std::uint64_t visit = 0;
+    std::uint64_t forgotten = 0;
+    const std::uint32_t person = order.person;
     {
         const std::lock_guard lock(mutex_);
         visit = visit_;
+        forgotten = forgotten_[person];
         cancel_ = false;
     }
     give(
-        [this, visit, order = std::move(order)]() mutable {
+        [this, visit, forgotten, person, order = std::move(order)]() mutable {
             DressResult result = dressed(std::move(order));
             const std::lock_guard lock(mutex_);
-            if (visit == visit_) dressed_.push_back(std::move(result));
+            if (visit == visit_ && forgotten == forgotten_[person])
+                dressed_.push_back(std::move(result));
         },
         false);
 }

@@ -86,6 +86,8 @@ class Tailor {
     void see(const pipeline::BodyFrame& frame);
     /// Orders and results of people who are gone are dropped, what is known of them overwritten.
     void forget();
+    /// The same of one person.
+    void forget(std::uint32_t person);
 
     [[nodiscard]] std::vector<DressResult> take_dressed();
     [[nodiscard]] std::optional<MeasureResult> take_measured();
@@ -129,7 +131,8 @@ class Tailor {
     std::vector<DressResult> dressed_;
     std::optional<MeasureResult> measured_;
     std::map<std::uint32_t, pipeline::BodyFrame> seen_;
-    std::uint64_t visit_ = 0; ///< results of earlier ones are dropped
+    std::uint64_t visit_ = 0;                          ///< results of earlier ones are dropped
+    std::map<std::uint32_t, std::uint64_t> forgotten_; ///< how often each was: their orders too
     std::atomic<double> progress_{0.0};
     std::atomic<int> open_{0};
     std::atomic<bool> stop_{false};

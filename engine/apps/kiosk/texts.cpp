@@ -75,6 +75,7 @@ constexpr std::array<const char*, kTextCount> kKeys = {
     "picture_lost",
     "clock_changed",
     "restarted",
+    "stock_plugins",
 };
 
 } // namespace

@@ -79,6 +79,7 @@ enum class Text : std::size_t {
     picture_lost,
     clock_changed,
     restarted,
+    stock_plugins,
     count_
 };
 

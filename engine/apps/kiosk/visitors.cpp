@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace toile::apps::kiosk {
 namespace {
@@ -21,12 +22,23 @@ float confidence(const pipeline::BodyFrame& frame, body::Joint joint) {
     return frame.joints[static_cast<std::size_t>(joint)].confidence;
 }
 
+// Of what is known of somebody nothing stays in freed memory.
+void overwrite(Shopper& shopper) {
+    std::fill(shopper.coefficients.begin(), shopper.coefficients.end(), 0.0);
+    shopper.frame = {};
+    shopper.measurements.clear();
+}
+
 } // namespace
 
-Shopper* Visitors::find(std::uint32_t id) {
-    for (Shopper& shopper : shoppers_)
+const Shopper* Visitors::find(std::uint32_t id) const {
+    for (const Shopper& shopper : shoppers_)
         if (shopper.id == id) return &shopper;
     return nullptr;
+}
+
+Shopper* Visitors::find(std::uint32_t id) {
+    return const_cast<Shopper*>(std::as_const(*this).find(id));
 }
 
 void Visitors::see(const pipeline::PeopleFrame& frame, const Feed& feed, const Vec3f& eye,
@@ -65,29 +77,41 @@ void Visitors::see(const pipeline::PeopleFrame& frame, const Feed& feed, const V
 }
 
 void Visitors::see_nobody(double dt_s) {
+    constexpr double kBlink_s = 0.4; // a frame or two that are late: nobody has gone
     for (Shopper& shopper : shoppers_) {
-        shopper.here = false;
         shopper.unseen_s += dt_s;
+        shopper.here = shopper.here && shopper.unseen_s < kBlink_s;
     }
     std::erase_if(shoppers_, [this](const Shopper& s) { return s.unseen_s > away_s_; });
 }
 
 void Visitors::erase() {
-    for (Shopper& shopper : shoppers_) {
-        std::fill(shopper.coefficients.begin(), shopper.coefficients.end(), 0.0);
-        shopper.frame = {};
-        shopper.measurements.clear();
-    }
+    for (Shopper& shopper : shoppers_)
+        overwrite(shopper);
     shoppers_.clear();
     tailor_.forget();
 }
 
+void Visitors::erase(std::uint32_t id) {
+    if (Shopper* shopper = find(id)) overwrite(*shopper);
+    std::erase_if(shoppers_, [id](const Shopper& s) { return s.id == id; });
+    tailor_.forget(id);
+}
+
+const Shopper* Visitors::first() const {
+    const auto agreed =
+        std::find_if(shoppers_.begin(), shoppers_.end(), [](const Shopper& s) { return s.agreed; });
+    if (agreed != shoppers_.end()) return &*agreed;
+    return shoppers_.empty() ? nullptr : &shoppers_.front();
+}
+
 Shopper* Visitors::first() {
-    Shopper* out = nullptr;
-    for (Shopper& shopper : shoppers_)
-        if (shopper.agreed && out == nullptr) out = &shopper;
-    if (out == nullptr && !shoppers_.empty()) out = &shoppers_.front();
-    return out;
+    return const_cast<Shopper*>(std::as_const(*this).first());
+}
+
+std::size_t Visitors::agreed() const {
+    return static_cast<std::size_t>(std::count_if(shoppers_.begin(), shoppers_.end(),
+                                                  [](const Shopper& s) { return s.agreed; }));
 }
 
 std::uint32_t Visitors::count() const {

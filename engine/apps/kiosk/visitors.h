@@ -21,6 +21,7 @@ struct WornLook {
     SizeAdvice advice;
     std::int64_t timestamp_ns = 0;
     std::vector<std::uint32_t> bare; ///< vertices of arms that it does not cover
+    std::size_t faults_said = 0;     ///< of the person's plugins, to the operator
     std::unique_ptr<pipeline::DressedPerson> person;
     std::unique_ptr<WornMeshes> meshes;
 };
@@ -38,6 +39,8 @@ struct Shopper {
     std::array<Choice, 2> wanted;               ///< of each look
     std::array<bool, 2> waiting{};              ///< to be ordered once the shape is known
     std::array<std::optional<WornLook>, 2> looks;
+    std::optional<Reach> reach; ///< where their buttons are
+    double reach_off_s = 0.0;   ///< so long they have stood elsewhere
 };
 
 /// Maps a place of the world to pixels of the screen; nothing when it is behind the camera.
@@ -55,12 +58,17 @@ class Visitors {
     void see_nobody(double dt_s);
     /// Everything of everybody.
     void erase();
+    /// Everything of one; who stays there is somebody who was not asked yet.
+    void erase(std::uint32_t id);
 
     [[nodiscard]] std::vector<Shopper>& all() { return shoppers_; }
     [[nodiscard]] const std::vector<Shopper>& all() const { return shoppers_; }
     /// The nearest of those who agreed, or of all while nobody has.
     [[nodiscard]] Shopper* first();
+    [[nodiscard]] const Shopper* first() const;
     [[nodiscard]] Shopper* find(std::uint32_t id);
+    [[nodiscard]] const Shopper* find(std::uint32_t id) const;
+    [[nodiscard]] std::size_t agreed() const;
     /// Near enough; once somebody agreed, only those who did count.
     [[nodiscard]] std::uint32_t count() const;
     /// Somebody is seen, though nobody near enough.

@@ -12,11 +12,15 @@
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <optional>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 
 extern char** environ; // NOLINT(readability-redundant-declaration): POSIX asks for it
 
@@ -24,7 +28,9 @@ namespace toile::apps::kiosk {
 namespace {
 
 constexpr int kPoll_ms = 50;
-constexpr double kEarly_s = 30.0;
+// Of one turn of the loop: when this process itself does not get to run, nobody has stalled.
+constexpr double kMostOfATurn_s = 0.1;
+constexpr double kLeastOfATurn = 0.2; // counts, however starved the mirror is
 
 /// One run of the mirror.
 class Child {
@@ -60,12 +66,27 @@ class Child {
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    /// Waits a little for a sign of life.
-    bool alive_sign() {
+    /// Waits a little for a sign of life; the last one.
+    std::optional<LifeSign> sign() {
         pollfd fd{read_end_, POLLIN, 0};
         (void)poll(&fd, 1, kPoll_ms);
         std::array<char, 256> bytes{};
-        return read(read_end_, bytes.data(), bytes.size()) > 0;
+        const ssize_t count = read(read_end_, bytes.data(), bytes.size());
+        if (count <= 0) return std::nullopt;
+        return static_cast<LifeSign>(bytes[static_cast<std::size_t>(count) - 1]);
+    }
+    /// Seconds that its threads were ready to run and the machine had no core for them.
+    [[nodiscard]] double starved_s() const {
+        double out = 0.0;
+        std::error_code none;
+        const std::string tasks = "/proc/" + std::to_string(pid_) + "/task";
+        for (const auto& task : std::filesystem::directory_iterator(tasks, none)) {
+            std::ifstream in(task.path() / "schedstat");
+            double ran_ns = 0.0;
+            double waited_ns = 0.0;
+            if (in >> ran_ns >> waited_ns) out += 1e-9 * waited_ns;
+        }
+        return out;
     }
     /// True once it has ended.
     bool ended(int& status) {
@@ -87,27 +108,48 @@ class Child {
     int read_end_ = -1;
 };
 
+std::string milliseconds(double seconds) {
+    return std::to_string(static_cast<int>(1000.0 * seconds)) + " ms";
+}
+
 struct Outcome {
     bool over = false; ///< by itself or interrupted
     int status = 0;
     std::string why; ///< of a crash or stall
 };
 
-// `down_s`: since when there is no mirror; 0 at the first start.
+/// Seconds of the watchdog's clock; 0 at the first start.
+struct Down {
+    double noticed_s = 0.0;
+    double last_sign_s = 0.0; ///< of the mirror that ended
+};
+
 Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOptions& options,
-                 const RestartPolicy& policy, double down_s) {
+                 const RestartPolicy& policy, Down& down) {
     Child child(arguments);
-    double sign_s = pipeline::wall_seconds();
-    double first_sign_s = sign_s;
+    double turn_s = pipeline::wall_seconds();
+    double silent_s = 0.0;
+    double starved_s = 0.0;
+    double allowed_s = options.start_s;
     bool signed_once = false;
     for (;;) {
-        if (child.alive_sign()) {
-            sign_s = pipeline::wall_seconds();
-            if (!signed_once && down_s > 0.0)
-                log::info("the mirror is up again after " +
-                          std::to_string(static_cast<int>(1000.0 * (sign_s - down_s))) + " ms");
-            if (!signed_once) first_sign_s = sign_s;
+        const auto sign = child.sign();
+        const double now_s = pipeline::wall_seconds();
+        // A machine with other work to do is no stall, but not for ever.
+        const double starved_now_s = child.starved_s();
+        const double waited_s = starved_now_s - std::exchange(starved_s, starved_now_s);
+        const double turn = std::min(now_s - turn_s, kMostOfATurn_s);
+        silent_s += std::clamp(turn - std::max(0.0, waited_s), kLeastOfATurn * turn, turn);
+        turn_s = now_s;
+        if (sign) {
+            silent_s = 0.0;
+            if (!signed_once && down.noticed_s > 0.0)
+                log::info("the mirror is up again after " + milliseconds(now_s - down.noticed_s) +
+                          ", " + milliseconds(now_s - down.last_sign_s) + " since its last sign");
             signed_once = true;
+            down.last_sign_s = now_s;
+            allowed_s = *sign == LifeSign::patience ? std::max(options.patience_s, options.stall_s)
+                                                    : options.stall_s;
         }
         int status = 0;
         if (child.ended(status)) {
@@ -118,15 +160,10 @@ Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOption
                 return {true, WEXITSTATUS(status), ""};
             return {false, 1, std::string("it crashed: ") + strsignal(WTERMSIG(status))};
         }
-        const double silent_s = pipeline::wall_seconds() - sign_s;
         if (host::interrupt_flag()) return {true, child.end(SIGTERM) == 0 ? 0 : 1, ""};
-        const bool early = pipeline::wall_seconds() - first_sign_s < kEarly_s;
-        const double stall_s = early ? std::max(options.stall_s, options.early_s) : options.stall_s;
-        if (silent_s > (signed_once ? stall_s : options.start_s)) {
+        if (silent_s > allowed_s) {
             child.end(SIGKILL);
-            return {false, 1,
-                    "it gave no sign of life for " +
-                        std::to_string(static_cast<int>(silent_s * 1000.0)) + " ms"};
+            return {false, 1, "it gave no sign of life for " + milliseconds(silent_s)};
         }
         if (policy.recovered(pipeline::wall_seconds())) {
             child.end(SIGTERM);
@@ -140,22 +177,26 @@ Outcome run_once(const std::vector<std::string>& arguments, const WatchdogOption
 int watch(const std::vector<std::string>& arguments, const WatchdogOptions& options) {
     host::catch_interrupts();
     RestartPolicy policy;
-    double down_s = 0.0;
+    Down down;
     for (;;) {
         std::vector<std::string> words = arguments;
         words.insert(words.end(), {"--restarts", std::to_string(policy.restarts())});
+        if (policy.stock()) words.emplace_back("--stock");
         if (policy.safe()) words.emplace_back("--safe");
-        const Outcome outcome = run_once(words, options, policy, down_s);
+        const Outcome outcome = run_once(words, options, policy, down);
         if (outcome.over) return outcome.status;
-        down_s = pipeline::wall_seconds();
+        down.noticed_s = pipeline::wall_seconds();
         if (outcome.why.empty()) {
-            log::info("the mirror leaves safe mode");
+            log::info("the whole mirror is tried again, with all plugins");
             policy.leave_safe_mode();
             continue;
         }
         const auto decision = policy.crashed(pipeline::wall_seconds());
         log::error("the mirror is started again" +
-                   std::string(decision.safe ? " in safe mode" : "") + ": " + outcome.why);
+                   std::string(decision.safe    ? " in safe mode"
+                               : decision.stock ? " with the stock plugins only"
+                                                : "") +
+                   ": " + outcome.why);
         std::this_thread::sleep_for(std::chrono::duration<double>(decision.pause_s));
     }
 }

@@ -44,7 +44,7 @@ TEST(Breath, RisesAtTheChestAndComesBack) {
         highest = std::max(highest, half[v]);
         if (trunk.mesh.positions[v].y() < 1.05f) EXPECT_LT(half[v], 0.001f);
     }
-    EXPECT_NEAR(highest, 0.01f, 0.001f);
+    EXPECT_NEAR(highest, 0.01f, 0.002f); // the falling off is softened
 }
 
 TEST(Breath, LeavesTheRestOfTheBody) {

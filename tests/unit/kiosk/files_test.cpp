@@ -145,6 +145,20 @@ TEST(KioskFiles, AFileThatCannotBeWrittenLeavesTheOldOne) {
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
+TEST(KioskScript, StepsComeAgainAfterTheirTime) {
+    const TemporaryFolder folder;
+    write_text(folder / "s.json", R"({"schema": 1, "steps": [
+        {"frame": 3, "act": "next_garment", "every_s": 5}, {"frame": 9, "quit": true}]})");
+    const Script script = load_script(folder / "s.json");
+    int times = 0;
+    for (int i = 0; i < 1000; ++i) // 100 s from 2 s on
+        times += static_cast<int>(
+            script.between({2.0, -1.0}, 2.0 + 0.1 * i, 2.0 + 0.1 * (i + 1)).size());
+    EXPECT_EQ(times, 20);
+    EXPECT_TRUE(script.between({-1.0, -1.0}, 0.0, 1000.0).empty()) << "not begun";
+    EXPECT_EQ(script.between({0.0, 0.0}, 0.0, 17.0).size(), 3u) << "a long frame leaves none out";
+}
+
 TEST(KioskScript, IsReadInOrderAndItsFaultsAreNamed) {
     const TemporaryFolder folder;
     write_text(folder / "s.json", R"({"schema": 1, "steps": [{"frame": 9, "picture": "end"},

@@ -69,108 +69,46 @@ TEST(KioskPointer, ANewScreenUnderARestingHandIsNotPressed) {
 }
 
 TEST(KioskPointer, TouchAndKeysGiveTheSameActions) {
-    EXPECT_EQ(Pointer::tap({150, 340}, kButtons), Action::decline);
-    EXPECT_EQ(Pointer::tap({50, 340}, kButtons), Action::invalid);
+    EXPECT_EQ(Pointer::tap({150, 340}, kButtons), (Target{Action::decline, 0}));
+    EXPECT_EQ(Pointer::tap({50, 340}, kButtons).action, Action::invalid);
     Pointer pointer({});
-    EXPECT_EQ(pointer.press_focus(kButtons), Action::invalid);
+    EXPECT_EQ(pointer.press_focus(kButtons).action, Action::invalid);
     pointer.move_focus(1, kButtons);
-    EXPECT_EQ(pointer.press_focus(kButtons), Action::agree);
+    EXPECT_EQ(pointer.press_focus(kButtons).action, Action::agree);
     pointer.move_focus(1, kButtons);
-    EXPECT_EQ(pointer.press_focus(kButtons), Action::decline);
+    EXPECT_EQ(pointer.press_focus(kButtons).action, Action::decline);
     pointer.move_focus(1, kButtons);
-    EXPECT_EQ(pointer.press_focus(kButtons), Action::agree);
+    EXPECT_EQ(pointer.press_focus(kButtons).action, Action::agree);
     pointer.move_focus(-1, kButtons);
-    EXPECT_EQ(pointer.press_focus(kButtons), Action::decline);
+    EXPECT_EQ(pointer.press_focus(kButtons).action, Action::decline);
 }
 
-struct Display {
-    int width, height;
-};
-
-class KioskLayout : public testing::TestWithParam<Display> {};
-
-// Shoulders of people of 1.4 and 2.1 m, and of somebody in a wheelchair, before a camera that shows
-// 2.2 m of height; also beside the middle.
-std::vector<Reach> reaches(int width, int height) {
-    const float metre = static_cast<float>(height) / 2.2f;
-    std::vector<Reach> out;
-    for (const float shoulder : {1.0f, 1.15f, 1.75f})
-        for (const float x : {0.3f, 0.5f, 0.7f})
-            out.push_back({{x * static_cast<float>(width),
-                            static_cast<float>(height) - (shoulder + 0.05f) * metre},
-                           metre});
-    return out;
-}
-
-TEST_P(KioskLayout, ButtonsAreOnTheScreenApartAndReadable) {
-    const auto [width, height] = GetParam();
-    const auto w = static_cast<float>(width);
-    const auto h = static_cast<float>(height);
-    EXPECT_GE(measures(width, height).text, h / 40.0f);
-    std::vector<std::optional<Reach>> all{std::nullopt};
-    for (const Reach& reach : reaches(width, height))
-        all.emplace_back(reach);
-    for (const auto& reach : all)
-        for (const ScreenName screen :
-             {ScreenName::consent, ScreenName::measure, ScreenName::mirror, ScreenName::frozen}) {
-            Screens screens({});
-            std::vector<Action> offers;
-            if (screen == ScreenName::mirror)
-                offers = {Action::previous_garment, Action::next_garment, Action::next_size,
-                          Action::next_colour,      Action::freeze,       Action::compare,
-                          Action::snapshot,         Action::finish};
-            else
-                offers = {Action::agree, Action::decline, Action::finish};
-            const auto buttons = lay_out(screen, offers, width, height, reach);
-            ASSERT_EQ(buttons.size(), offers.size());
-            for (std::size_t i = 0; i < buttons.size(); ++i) {
-                const render::Rect& r = buttons[i].rect;
-                EXPECT_EQ(buttons[i].action, offers[i]);
-                EXPECT_GE(r.x, 0.0f);
-                EXPECT_GE(r.y, 0.0f);
-                EXPECT_LE(r.x + r.width, w);
-                EXPECT_LE(r.y + r.height, h);
-                EXPECT_GE(r.height, 2.0f * measures(width, height).text);
-                for (std::size_t j = 0; j < i; ++j) {
-                    const render::Rect& o = buttons[j].rect;
-                    const bool apart = r.x >= o.x + o.width || o.x >= r.x + r.width ||
-                                       r.y >= o.y + o.height || o.y >= r.y + r.height;
-                    EXPECT_TRUE(apart) << i << " and " << j;
-                }
-            }
+TEST(KioskPointer, HandsPressTheButtonsOfTheirOwnPersonOnly) {
+    const std::vector<Button> buttons = {{Action::next_garment, {0, 0, 100, 80}, 1},
+                                         {Action::next_garment, {0, 100, 100, 80}, 2},
+                                         {Action::agree, {0, 200, 100, 80}, 0}};
+    for (const auto& [person, y, pressed] : {std::tuple{1u, 40.0f, true},
+                                             {2u, 40.0f, false},
+                                             {2u, 140.0f, true},
+                                             {1u, 140.0f, false},
+                                             {1u, 240.0f, true},
+                                             {2u, 240.0f, true}}) {
+        Pointer pointer({});
+        Action last = Action::invalid;
+        for (int i = 0; i < 40; ++i) {
+            const Hand hand{person, {50, y}, true};
+            const Action now = pointer.hover({&hand, 1}, buttons, 0.05);
+            if (now != Action::invalid) last = now;
         }
-}
-
-TEST_P(KioskLayout, EveryButtonIsWithinAnArmOfTheShoulder) {
-    const auto [width, height] = GetParam();
-    constexpr float kArm_m = 0.62f; // shoulder to middle of the hand, of somebody of 1.4 m: 0.53
-    constexpr float kHalfShoulders = 0.16f;
-    const std::vector<Action> offers = {
-        Action::previous_garment, Action::next_garment, Action::next_size, Action::next_colour,
-        Action::freeze,           Action::compare,      Action::finish};
-    for (const Reach& reach : reaches(width, height)) {
-        if (std::abs(reach.shoulders.x() / static_cast<float>(width) - 0.5f) > 0.1f) continue;
-        for (const Button& button : lay_out(ScreenName::mirror, offers, width, height, reach)) {
-            // The nearest place of the button that a hand may rest on.
-            const render::Rect r = button.rect.inset(0.2f * button.rect.height);
-            const float side = r.centre().x() < reach.shoulders.x() ? -1.0f : 1.0f;
-            const Vec2f shoulder =
-                reach.shoulders + Vec2f(side * kHalfShoulders * reach.metre, 0.0f);
-            const Vec2f nearest(std::clamp(shoulder.x(), r.x, r.x + r.width),
-                                std::clamp(shoulder.y(), r.y, r.y + r.height));
-            EXPECT_LE((nearest - shoulder).norm() / reach.metre, kArm_m)
-                << action_name(button.action) << " at shoulder " << reach.shoulders.y();
-        }
+        EXPECT_EQ(last != Action::invalid, pressed) << person << " at " << y;
+        EXPECT_TRUE(!pressed || pointer.person() == person);
     }
+    Pointer keys({});
+    keys.move_focus(1, buttons);
+    keys.move_focus(1, buttons);
+    EXPECT_EQ(keys.press_focus(buttons), (Target{Action::next_garment, 2}))
+        << "the same action of another person";
 }
-
-INSTANTIATE_TEST_SUITE_P(Displays, KioskLayout,
-                         testing::Values(Display{1080, 1920}, Display{1920, 1080},
-                                         Display{540, 960}, Display{1280, 720}),
-                         [](const auto& display) {
-                             return std::to_string(display.param.width) + "x" +
-                                    std::to_string(display.param.height);
-                         });
 
 } // namespace
 } // namespace toile::test
