@@ -114,7 +114,7 @@ TEST_F(KioskFaults, APluginThatCrashesOrHangsIsLeftOutAfterTheSecondTime) {
     write("visit.json", R"({"schema": 1, "steps": [{"frame": 20, "act": "agree"}]})");
     for (const char* fault : {"crashes", "hangs"}) {
         fs::remove_all(folder_ / "plugins");
-        const auto run = kiosk({"--realtime", "--frames", "70", "--script", at("visit.json"),
+        const auto run = kiosk({"--realtime", "--frames", "260", "--script", at("visit.json"),
                                 "--plugins", faulty_plugins(fault)});
         ASSERT_EQ(run.status, 0) << run.output;
         EXPECT_THAT(run.output, HasSubstr("started again with the stock plugins only")) << fault;
