@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 namespace toile::scan {
@@ -341,6 +342,39 @@ void follow_parts(const DeformationGraph& graph, const PartLayout& layout,
     });
     for (WarpedView& view : views)
         view.settle();
+}
+
+std::size_t leave_out_astray(const PartLayout& layout, const geometry::NearestSurface& surface,
+                             const AstrayOptions& options, std::vector<WarpedView>& views,
+                             const RowLoop& rows) {
+    std::vector<std::size_t> left_out(views.size(), 0);
+    const auto one = [&](std::size_t v) {
+        WarpedView& view = views[v];
+        const PulledView seen = pulled(view);
+        std::array<std::size_t, kGroupCount> count{}, near{};
+        for (std::size_t i = 0; i < seen.points.size(); ++i) {
+            if (!(seen.points[i].x() == seen.points[i].x())) continue;
+            const std::size_t group = index(layout.group(view.bindings[i]));
+            if (group <= index(BodyGroup::head)) continue;
+            const float off = surface.nearest(seen.points[i]).distance;
+            ++count[group];
+            if (off < options.near_m) ++near[group];
+            if (off > options.most_off_m) view.bindings[i].weights[0] = 0.0f;
+        }
+        for (std::size_t g = 0; g < kGroupCount; ++g) {
+            if (static_cast<double>(near[g]) >= options.least_near * static_cast<double>(count[g]))
+                continue;
+            ++left_out[v];
+            for (NodeBinding& binding : view.bindings)
+                if (binding.weights[0] > 0.0f && index(layout.group(binding)) == g)
+                    binding.weights[0] = 0.0f;
+        }
+    };
+    rows(static_cast<std::uint32_t>(views.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t v = begin; v < end; ++v)
+            one(v);
+    });
+    return std::accumulate(left_out.begin(), left_out.end(), std::size_t{0});
 }
 
 double residual(std::span<const WarpedView> views, std::span<const ViewPair> pairs, float reach_m,

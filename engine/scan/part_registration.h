@@ -85,6 +85,17 @@ void follow_parts(const DeformationGraph& graph, const PartLayout& layout,
                   const PartRegistrationOptions& options, std::vector<WarpedView>& views,
                   const RowLoop& rows);
 
+/// Unbinds readings of limbs that are far from a template which elsewhere is near: those farther
+/// than `most_off_m`, and whole limbs of views of which `least_near` is not within `near_m`.
+/// Returns the number of the latter.
+struct AstrayOptions {
+    float near_m = 0.015f, most_off_m = 0.03f;
+    double least_near = 0.6;
+};
+std::size_t leave_out_astray(const PartLayout& layout, const geometry::NearestSurface& surface,
+                             const AstrayOptions& options, std::vector<WarpedView>& views,
+                             const RowLoop& rows);
+
 /// Root mean square of how far readings are from what the other view of a pair saw there, along the
 /// normals; those farther than `reach_m`, or that face elsewhere, count as that.
 [[nodiscard]] double residual(std::span<const WarpedView> views, std::span<const ViewPair> pairs,

@@ -50,6 +50,7 @@ class WarpFusion {
     [[nodiscard]] WarpedSurface surface(const std::optional<geometry::Plane>& floor);
 
   private:
+    void leave_out_astray();
     void warp(std::span<const ViewPair> pairs, float share);
     [[nodiscard]] std::vector<ViewPair> view_pairs() const;
     [[nodiscard]] Volume fused() const;
@@ -69,6 +70,7 @@ class WarpFusion {
     geometry::TriangleMesh shape_;  // in the scan's coordinates: about the template's middle
     Pose first_ = Pose::Identity(); // scan from the first camera
     DeformationGraph graph_;
+    std::optional<PartLayout> layout_; // when the limbs were followed
     std::vector<WarpedView> views_;
     WarpFusionReport report_;
 };
@@ -108,7 +110,16 @@ void WarpFusion::bind_all() {
                 ++read;
                 bound += view.bound(p) ? 1 : 0;
             }
+    leave_out_astray();
     report_.bound_share = read > 0 ? static_cast<double>(bound) / static_cast<double>(read) : 0.0;
+}
+
+/// Where the template is the person's own surface, limbs that are elsewhere were not followed.
+void WarpFusion::leave_out_astray() {
+    if (!layout_) return;
+    const geometry::NearestSurface surface(shape_.positions, shape_.triangles);
+    if (template_distance(surface) < options_.likely_m)
+        report_.limbs_astray = scan::leave_out_astray(*layout_, surface, {}, views_, rows_);
 }
 
 /// What the views of the end of the turn see of the start, off each other.
@@ -159,7 +170,7 @@ void WarpFusion::register_all(const std::function<void(double)>& progress) {
 /// P4: labels, trunk, limbs, and with what came of it again; an iteration that does not help is
 /// taken back and is the last.
 void WarpFusion::register_parts_first(const PartStage& parts) {
-    const PartLayout layout(graph_, shape_, parts.groups);
+    const PartLayout& layout = layout_.emplace(graph_, shape_, parts.groups);
     const geometry::NearestSurface surface(shape_.positions, shape_.triangles);
     follow_parts(graph_, layout, shape_, surface, parts.options, views_, rows_);
     bind_all();

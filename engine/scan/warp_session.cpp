@@ -24,6 +24,7 @@ nlohmann::ordered_json told(const WarpFusionReport& r) {
                 {"views_rms_m", r.rounds.empty() ? 0.0 : r.rounds.back().rms_m},
                 {"overlap", r.rounds.empty() ? 0.0 : r.rounds.back().overlap},
                 {"loop", {{"gap_m", r.loop_gap_m}, {"error_m", r.loop_error_m}}},
+                {"limbs_astray", r.limbs_astray},
                 {"bound_share", r.bound_share},
                 {"largest_move_m", r.largest_move_m},
                 {"readings_rms_m", r.surface_rms_m},
