@@ -16,7 +16,7 @@ struct NumberedView {
 struct MovingSubjectOptions {
     FilterOptions filter;
     bool choose_radius = true;   ///< rougher readings are smoothed more widely
-    std::size_t most_views = 96; ///< kept of all frames, spread evenly
+    std::size_t most_views = 72; ///< kept of all frames, spread evenly
 };
 
 class MovingSubject {

@@ -330,7 +330,7 @@ void follow_parts(const DeformationGraph& graph, const PartLayout& layout,
     rows(static_cast<std::uint32_t>(views.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = std::max(1u, begin); i < end; ++i)
             for (int round = 0; round < options.follow_rounds; ++round) {
-                bind(graph, shape, {}, views[i]);
+                bind(graph, shape, {}, views[i], options.stride);
                 const float reach = options.start_reach_m / static_cast<float>(round + 1);
                 for (std::size_t g = 0; g < kGroupCount; ++g) {
                     const auto group = static_cast<BodyGroup>(g);

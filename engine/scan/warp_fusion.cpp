@@ -156,7 +156,10 @@ void WarpFusion::register_all(const std::function<void(double)>& progress) {
         progress(0.3 + 0.4 * (round + 1) / options_.rounds);
         // The template follows, and readings go to where it then is.
         if (round == half) bind_all();
-        if (share >= 1.0f && report_.rounds.back().step_m < 2e-4) break;
+        const auto& done = report_.rounds;
+        if (share >= 1.0f &&
+            (done.back().step_m < 2e-4 || done.back().rms_m > 0.998 * done[done.size() - 2].rms_m))
+            break;
     }
     report_.loop_error_m = loop_rms();
     for (const WarpedView& view : views_)

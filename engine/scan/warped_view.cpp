@@ -45,13 +45,13 @@ std::vector<Vec3f> posed_template(const DeformationGraph& graph, std::span<const
 }
 
 void bind(const DeformationGraph& graph, const geometry::TriangleMesh& shape,
-          const BindingOptions& options, WarpedView& view) {
+          const BindingOptions& options, WarpedView& view, int stride) {
     const std::vector<Vec3f> posed = posed_template(graph, shape.positions, view.inverse_motions());
     const geometry::NearestSurface surface(posed, shape.triangles);
     const Window& camera = view.view.camera;
     view.bindings.assign(camera.count(), {});
-    for (int y = 0; y < camera.height; ++y)
-        for (int x = 0; x < camera.width; ++x) {
+    for (int y = 0; y < camera.height; y += stride)
+        for (int x = 0; x < camera.width; x += stride) {
             const std::size_t i = camera.at(x, y);
             if (view.view.depth[i] == 0.0f) continue;
             const auto near = surface.nearest(view.view.point(x, y), options.reach_m);

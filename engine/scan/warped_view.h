@@ -40,9 +40,10 @@ struct BindingOptions {
                                                 std::span<const Vec3f> positions,
                                                 std::span<const Warp> camera_from_scan);
 
-/// Binds each reading to the nodes of the nearest place of the template, posed by the motions.
+/// Binds each reading to the nodes of the nearest place of the template, posed by the motions; with
+/// a stride only those of every so many columns and rows.
 void bind(const DeformationGraph& graph, const geometry::TriangleMesh& shape,
-          const BindingOptions& options, WarpedView& view);
+          const BindingOptions& options, WarpedView& view, int stride = 1);
 
 [[nodiscard]] PulledView pulled(const WarpedView& view);
 

@@ -29,7 +29,7 @@ class TurntableScanner {
                        60},
         sdk::Parameter{"rounds", TOILE_PARAMETER_INTEGER, "1", "Of registration, at most", 0, 50,
                        10},
-        sdk::Parameter{"views", TOILE_PARAMETER_INTEGER, "1", "Kept of all frames", 8, 400, 96},
+        sdk::Parameter{"views", TOILE_PARAMETER_INTEGER, "1", "Kept of all frames", 8, 400, 72},
         sdk::Parameter{"smoothness", TOILE_PARAMETER_REAL, "1",
                        "How much neighbouring nodes move alike", 0.0001, 1000, 0.1},
         sdk::Parameter{"steadiness", TOILE_PARAMETER_REAL, "1",

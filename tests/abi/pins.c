@@ -445,3 +445,14 @@ AT(toile_body_fit, reserved, 4);
 AT(toile_body_fit, fit, 8);
 AT(toile_body_fit, surface, 16);
 AT(toile_body_fit, report, 24);
+
+SIZE(toile_scan_template, 168);
+AT(toile_scan_template, size, 0);
+AT(toile_scan_template, instant, 4);
+AT(toile_scan_template, surface, 8);
+AT(toile_scan_template, part_labels, 144);
+
+SIZE(toile_scan_guide, 16);
+AT(toile_scan_guide, size, 0);
+AT(toile_scan_guide, reserved, 4);
+AT(toile_scan_guide, guide, 8);

@@ -11,19 +11,39 @@
 
 namespace toile::evaluation {
 
-Deviation deviation(std::span<const Vec3f> points, const geometry::TriangleMesh& surface) {
-    const geometry::NearestSurface tree(surface.positions, surface.triangles);
-    std::vector<double> distances;
-    Deviation out;
-    for (const Vec3f& p : points) {
-        distances.push_back(tree.nearest(p).distance);
-        out.mean_m += distances.back();
+std::vector<double> vertex_areas(const geometry::TriangleMesh& mesh) {
+    std::vector<double> out(mesh.positions.size(), 0.0);
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3f a = mesh.positions[t[1]] - mesh.positions[t[0]],
+                    b = mesh.positions[t[2]] - mesh.positions[t[0]];
+        for (const std::uint32_t v : t)
+            out[v] += static_cast<double>(a.cross(b).norm()) / 6.0;
     }
-    if (distances.empty()) return out;
+    return out;
+}
+
+Deviation deviation(std::span<const Vec3f> points, const geometry::TriangleMesh& surface,
+                    std::span<const double> weights) {
+    const geometry::NearestSurface tree(surface.positions, surface.triangles);
+    std::vector<std::pair<double, double>> distances; // and weights
+    Deviation out;
+    double all = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double weight = weights.empty() ? 1.0 : weights[i];
+        distances.emplace_back(tree.nearest(points[i]).distance, weight);
+        out.mean_m += weight * distances.back().first;
+        all += weight;
+    }
+    if (!(all > 0.0)) return out;
     std::sort(distances.begin(), distances.end());
-    out.mean_m /= static_cast<double>(distances.size());
-    out.p95_m = distances[distances.size() * 95 / 100];
-    out.most_m = distances.back();
+    out.mean_m /= all;
+    out.most_m = distances.back().first;
+    double below = 0.0;
+    for (const auto& [distance, weight] : distances) {
+        below += weight;
+        out.p95_m = distance;
+        if (below >= 0.95 * all) break;
+    }
     return out;
 }
 
@@ -75,13 +95,14 @@ void compare(const geometry::TriangleMesh& scan, const geometry::TriangleMesh& t
         std::printf("  %-26s mean %5.2f  95 %% %5.2f  most %6.2f mm\n", what, 1e3 * d.mean_m,
                     1e3 * d.p95_m, 1e3 * d.most_m);
     };
-    print("as it stands", deviation(scan.positions, truth));
+    const std::vector<double> areas = vertex_areas(scan);
+    print("as it stands", deviation(scan.positions, truth, areas));
     const Eigen::Isometry3d move = best_motion(scan.positions, truth);
     geometry::TriangleMesh laid = scan;
     for (Vec3f& p : laid.positions)
         p = (move * p.cast<double>()).cast<float>();
-    print("laid on the truth", deviation(laid.positions, truth));
-    print("truth to scan", deviation(truth.positions, laid));
+    print("laid on the truth", deviation(laid.positions, truth, areas));
+    print("truth to scan", deviation(truth.positions, laid, vertex_areas(truth)));
     for (const float h : heights)
         std::printf("  girth at %.2f m: %6.1f mm, true %6.1f, %+.1f\n", static_cast<double>(h),
                     1e3 * girth_at(laid, h), 1e3 * girth_at(truth, h),

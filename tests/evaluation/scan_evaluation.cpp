@@ -2,6 +2,7 @@
 // Options: the filter's and the fusion's switches (see `set`), heights=a,b,c for girths (metres),
 // out=FILE.ply. Shares of time on stderr.
 #include "assets/colored_mesh.h"
+#include "assets/files.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "imaging/capture_folder.h"
