@@ -1,4 +1,5 @@
 // Kind toile.scanner/1: one rigid subject; one camera, or several that know where they stand.
+#include "boundary/scan_output.h"
 #include "boundary/stream_camera.h"
 #include "core/error.h"
 #include "fusion_scanner/fusion_session.h"
@@ -106,8 +107,7 @@ class FusionScanner {
         } catch (const toile::Error& e) {
             throw sdk::Failure(TOILE_E_NUMERIC, e.what());
         }
-        give(result, *sink.mesh);
-        if (sink.report != nullptr) check(sink.report(&sink, result.report.dump().c_str()));
+        toile::boundary::give(result.mesh, result.colors, result.report.dump(), sink);
         job.progress(1.0);
     }
 
@@ -132,29 +132,6 @@ class FusionScanner {
         if (!out.color.empty() && out.color.size() != at->pixels)
             throw sdk::bad_argument("frame.color: not of the depth picture's size");
         return out;
-    }
-
-    static void check(toile_status status) {
-        if (status < 0) throw sdk::Failure(status, "the sink refused the surface");
-    }
-
-    static void give(const fusion::SessionResult& result, toile_mesh_sink& sink) {
-        const auto& mesh = result.mesh;
-        toile_mesh_buffers out{};
-        out.size = sizeof(out);
-        check(sink.begin(&sink, static_cast<std::uint32_t>(mesh.positions.size()),
-                         static_cast<std::uint32_t>(mesh.triangles.size()), &out));
-        const auto positions = sdk::span_of<sdk::Float3>(out.positions, "sink.positions");
-        const auto normals = sdk::span_of<sdk::Float3>(out.normals, "sink.normals");
-        for (std::size_t v = 0; v < positions.size(); ++v) {
-            std::copy_n(mesh.positions[v].data(), 3, positions[v].data());
-            std::copy_n(mesh.normals[v].data(), 3, normals[v].data());
-        }
-        const auto colors = sdk::span_of<Rgba8>(out.colors, "sink.colors");
-        std::copy(result.colors.begin(), result.colors.end(), colors.begin());
-        const auto corners = sdk::span_of<sdk::Triangle>(out.triangles, "sink.triangles");
-        std::copy(mesh.triangles.begin(), mesh.triangles.end(), corners.begin());
-        check(sink.commit(&sink));
     }
 
     static fusion::SessionCamera camera_of(const toile_stream& stream) {

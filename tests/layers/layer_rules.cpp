@@ -25,7 +25,7 @@ const std::map<std::string, Names> kArrows = {
     {"body", {"assets"}},
     {"cloth", {"geometry"}},
     {"scan", {"geometry", "imaging"}},
-    {"boundary", {"sdk", "body", "cloth"}},
+    {"boundary", {"sdk", "body", "cloth", "scan"}},
     {"garment", {"body"}},
     {"host", {"abi", "core"}},
     {"pipeline", {"host", "garment"}},
