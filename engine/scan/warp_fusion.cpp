@@ -175,11 +175,11 @@ void WarpFusion::register_all(const std::function<void(double)>& progress) {
 void WarpFusion::register_parts_first(const PartStage& parts) {
     const PartLayout& layout = layout_.emplace(graph_, shape_, parts.groups);
     const geometry::NearestSurface surface(shape_.positions, shape_.triangles);
-    follow_parts(graph_, layout, shape_, surface, parts.options, views_, rows_);
-    bind_all();
-    if (parts.iterations == 0) return;
     const std::vector<ViewPair> pairs = view_pairs();
     const auto measured = [&] { return residual(views_, pairs, parts.residual_reach_m, rows_); };
+    report_.residuals_m.push_back(measured());
+    follow_parts(graph_, layout, shape_, surface, parts.options, views_, rows_);
+    bind_all();
     report_.residuals_m.push_back(measured());
     for (int k = 0; k < parts.iterations; ++k) {
         struct Kept {

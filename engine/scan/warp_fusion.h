@@ -41,7 +41,7 @@ struct PartStage {
 
 struct WarpFusionReport {
     std::vector<JointWarpRound> rounds;
-    std::vector<double> residuals_m; ///< of the part stage: before it, and after each iteration
+    std::vector<double> residuals_m; ///< before the limbs were followed, after it, each iteration
     std::size_t parts_left_out = 0;  ///< of views
     std::size_t limbs_astray = 0;    ///< of views: far from a template that elsewhere is near
     double bound_share = 0.0;        ///< of the readings: near the template

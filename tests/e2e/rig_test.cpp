@@ -32,7 +32,7 @@ class RigTest : public testing::Test {
         write_ball_motion(*folder_ / "ball.cache", motion);
         record("ball", R"("frames": 30, "people": [{"body": {"surfaces": "ball.cache"}}])");
         record("turn",
-               R"("frames": 19, "people": [{"body": {"avatar": "woman"}, "turntable_s": 0.6}])");
+               R"("frames": 37, "people": [{"body": {"avatar": "woman"}, "turntable_s": 1.2}])");
     }
     static void TearDownTestSuite() { folder_.reset(); }
 
@@ -75,7 +75,7 @@ TEST_F(RigTest, AMovedBallTellsWhereCamerasStandAndTheyScanTogether) {
     ASSERT_EQ(done.status, 0) << done.output;
     const auto rig = imaging::load_rig(path("ball_rig.json"));
     EXPECT_EQ(rig.method, "ball");
-    EXPECT_EQ(rig.cameras.at(0).name, "front");
+    EXPECT_EQ(rig.cameras.at(0).name, "camera0");
     EXPECT_NEAR(rig.report.at("radius_m").get<double>(), 0.1, 0.002);
     EXPECT_GT(rig.report.at("cameras").at(1).at("places").get<int>(), 20);
     const auto [metres, degrees] = off("ball_rig.json");
@@ -88,7 +88,7 @@ TEST_F(RigTest, AMovedBallTellsWhereCamerasStandAndTheyScanTogether) {
     ASSERT_EQ(scanned.status, 0) << scanned.output;
     const auto report = parse_json_file(path("woman.json"));
     EXPECT_EQ(report.at("cameras"), 2);
-    EXPECT_EQ(report.at("frames"), 19);
+    EXPECT_EQ(report.at("frames"), 37);
     EXPECT_NEAR(report.at("turn_deg").get<double>(), 360.0, 20.0);
     const auto mesh = assets::load_colored_mesh(path("woman.ply")).mesh;
     const auto topology = geometry::check_topology(mesh.positions, mesh.triangles);
