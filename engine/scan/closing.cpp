@@ -255,6 +255,14 @@ ClosedSurface closed_surface(const Volume& volume, std::span<const DepthView* co
     return out;
 }
 
+void move(const Eigen::Isometry3d& by, geometry::TriangleMesh& mesh) {
+    const Eigen::Isometry3f motion = by.cast<float>();
+    for (Vec3f& p : mesh.positions)
+        p = motion * p;
+    for (Vec3f& n : mesh.normals)
+        n = motion.linear() * n;
+}
+
 void smooth(geometry::TriangleMesh& mesh) {
     const auto around = geometry::vertex_adjacency(mesh.positions.size(), mesh.triangles);
     for (const float share : {0.6f, -0.63f}) {

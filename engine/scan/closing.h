@@ -48,6 +48,9 @@ closed_surface(const Volume& volume, std::span<const DepthView* const> views,
                const ViewPlaces& places, const std::optional<geometry::Plane>& floor,
                const geometry::NearestSurface* likely, const RowLoop& rows);
 
+/// Moves a surface and its normals.
+void move(const Eigen::Isometry3d& by, geometry::TriangleMesh& mesh);
+
 /// One round of smoothing that keeps the volume (Taubin 1995), normals made anew.
 void smooth(geometry::TriangleMesh& mesh);
 

@@ -1,6 +1,8 @@
 #include "scan/fusion.h"
 
 #include "core/error.h"
+#include "scan/subject.h"
+#include "scan/tracking.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +10,6 @@
 
 namespace toile::scan {
 namespace {
-
-constexpr float kTrackingVoxel_m = 0.01f, kTrackingTruncation_m = 0.04f;
-constexpr double kLeastOverlap = 0.5; // of a view that fits
-constexpr double kMostRms_m = 0.015;
 
 Vec3f middle_of(const DepthView& view) {
     Vec3d sum = Vec3d::Zero();
@@ -34,15 +32,6 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// A share of a motion.
-Pose part_of(const Pose& motion, double share) {
-    const Eigen::AngleAxisd turn(motion.linear());
-    Pose out = Pose::Identity();
-    out.linear() = Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix();
-    out.translation() = share * motion.translation();
-    return out;
-}
-
 /// How far a motion takes the subject's own points, rms.
 double distance_of(const Pose& motion, const DepthView& view, const Pose& pose) {
     double square = 0.0, count = 0.0;
@@ -63,10 +52,7 @@ RigidFusion::RigidFusion(const FusionOptions& options, RowLoop rows)
 RigidFusion::~RigidFusion() = default;
 
 void RigidFusion::begin(const DepthView& first) {
-    VolumeOptions coarse;
-    coarse.voxel_m = kTrackingVoxel_m;
-    coarse.truncation_m = kTrackingTruncation_m;
-    model_ = std::make_unique<Volume>(Vec3f::Zero(), coarse);
+    model_ = std::make_unique<Volume>(Vec3f::Zero(), kTrackingVolume);
     first_.translation() = -middle_of(first).cast<double>();
 }
 
@@ -102,26 +88,12 @@ Registered RigidFusion::tracked(const DepthView& view) const {
     const Pose& last = poses_.back();
     const Pose step =
         poses_.size() < 2 ? Pose::Identity() : last * poses_[poses_.size() - 2].inverse();
-    // Near pairs first: an arm's width away there may be another part of the subject.
-    struct Try {
-        Pose start;
-        std::array<float, 2> reach_m;
-    };
-    Registered best;
-    for (const Try& attempt : {Try{step * last, {0.04f, 0.025f}}, Try{step * last, {0.1f, 0.04f}},
-                               Try{last, {0.1f, 0.04f}}}) {
-        Registered found;
-        found.pose = attempt.start;
-        for (const float reach : attempt.reach_m) {
-            RegistrationOptions options;
-            options.reach_m = reach;
-            const SurfaceMap map = raycast(*model_, view, kStride, reach, found.pose, rows_);
-            found = register_view(view, map, found.pose, options, rows_);
-        }
-        if (found.overlap > best.overlap) best = found;
-        if (best.overlap > 0.7 && best.rms_m < kMostRms_m) break;
-    }
-    return best;
+    return track_on(last, step, [&](const Pose& start, float reach) {
+        RegistrationOptions options;
+        options.reach_m = reach;
+        const SurfaceMap map = raycast(*model_, view, kStride, reach, start, rows_);
+        return register_view(view, map, start, options, rows_);
+    });
 }
 
 std::vector<std::size_t> RigidFusion::all() const {
@@ -145,7 +117,7 @@ double RigidFusion::gap(std::size_t late, Pose& correction) const {
     std::vector<std::size_t> first;
     for (std::size_t i = 0; i < views_.size() / 3; ++i)
         if (angle_between(sight(poses_[i]), sight(poses_[0])) < 0.8) first.push_back(i);
-    const Volume start = fused(first, kTrackingVoxel_m, kTrackingTruncation_m);
+    const Volume start = fused(first, kTrackingVolume.voxel_m, kTrackingVolume.truncation_m);
     Vec3d turn = Vec3d::Zero(), shift = Vec3d::Zero();
     int count = 0;
     for (std::size_t i = late < 3 ? 0 : late - 3; i <= std::min(late + 2, views_.size() - 1); ++i) {
@@ -191,9 +163,9 @@ void RigidFusion::close_loop() {
     report_.loop_closed = true;
     report_.loop_gap_m = missed;
     for (std::size_t i = 1; i < poses_.size(); ++i)
-        poses_[i] =
-            part_of(correction, std::min(1.0, static_cast<double>(i) / static_cast<double>(late))) *
-            poses_[i];
+        poses_[i] = times_over(correction,
+                               std::min(1.0, static_cast<double>(i) / static_cast<double>(late))) *
+                    poses_[i];
     if (options_.refine_jointly) {
         for (const float reach : {0.03f, 0.02f}) {
             JointOptions joint;
@@ -274,11 +246,7 @@ FusedSurface RigidFusion::finish(const std::optional<geometry::Plane>& floor,
     progress(0.8);
     const Pose out_of_scan = first_.inverse();
     std::optional<geometry::Plane> ground;
-    if (floor) {
-        const Eigen::Isometry3f move = first_.cast<float>();
-        ground = geometry::Plane::through(move * Vec3f(floor->offset * floor->normal),
-                                          move.linear() * floor->normal);
-    }
+    if (floor) ground = moved(first_, *floor);
     std::vector<const DepthView*> views;
     for (const DepthView& view : views_)
         views.push_back(&view);
@@ -289,11 +257,7 @@ FusedSurface RigidFusion::finish(const std::optional<geometry::Plane>& floor,
     FusedSurface out;
     out.colors = vertex_colors(closed.mesh, views, places, rows_);
     out.mesh = std::move(closed.mesh);
-    const Eigen::Isometry3f move = out_of_scan.cast<float>();
-    for (Vec3f& p : out.mesh.positions)
-        p = move * p;
-    for (Vec3f& n : out.mesh.normals)
-        n = move.linear() * n;
+    move(out_of_scan, out.mesh);
     for (const Pose& pose : poses_)
         out.poses.push_back(out_of_scan * pose);
     out.frames = numbers_;

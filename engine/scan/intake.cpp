@@ -30,6 +30,7 @@ std::optional<DepthView> Intake::view(std::span<const float> depth, std::span<co
         return std::nullopt;
     }
     DepthView out = filtered_view(picture, subject.mask, filter_, rows_);
+    last_floor_ = subject.floor;
     if (fed_ - passed_ - empty_ > 1) return out;
     floor_ = subject.floor;
     if (!choose_radius_ || !(roughness(out) > kRough)) return out;

@@ -25,6 +25,11 @@ class Intake {
     [[nodiscard]] std::optional<DepthView> view(std::span<const float> depth,
                                                 std::span<const Rgba8> color);
 
+    /// Filters as another camera's intake chose to.
+    void filter_as(const Intake& other) {
+        filter_ = other.filter_;
+        choose_radius_ = false;
+    }
     /// Counts a frame that is not looked at.
     void pass() { ++fed_, ++passed_; }
 
@@ -32,6 +37,8 @@ class Intake {
     [[nodiscard]] const FilterOptions& filter() const { return filter_; }
     /// Of the first view, in the camera's coordinates, normal up.
     [[nodiscard]] const std::optional<geometry::Plane>& floor() const { return floor_; }
+    /// The same of the last one.
+    [[nodiscard]] const std::optional<geometry::Plane>& last_floor() const { return last_floor_; }
     [[nodiscard]] std::size_t fed() const { return fed_; }
     [[nodiscard]] std::size_t empty() const { return empty_; }
     [[nodiscard]] const std::string& trouble() const { return trouble_; }
@@ -45,7 +52,7 @@ class Intake {
     FilterOptions filter_;
     bool choose_radius_;
     RowLoop rows_;
-    std::optional<geometry::Plane> floor_;
+    std::optional<geometry::Plane> floor_, last_floor_;
     std::size_t fed_ = 0, passed_ = 0, empty_ = 0;
     std::string trouble_;
 };

@@ -1,14 +1,10 @@
 #include "scan/joint_warp.h"
 
-#include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
+#include "scan/normal_equations.h"
 
 namespace toile::scan {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Eigen::Index;
 using Eigen::VectorXd;
 
@@ -45,16 +41,6 @@ struct PairSums {
         : h(graph.links().size()), g(VectorXd::Zero(static_cast<Index>(6 * graph.nodes().size()))) {
     }
 };
-
-/// A small motion about a point: rotation vector, then translation.
-Pose motion_about(const Vec3d& about, const Vector6& step) {
-    Pose out = Pose::Identity();
-    const Vec3d turn = step.head<3>();
-    const double angle = turn.norm();
-    if (angle > 1e-12) out.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-    out.translation() = about - out.linear() * about + step.tail<3>();
-    return out;
-}
 
 Vec3d rotation_vector(const Pose& pose) {
     const Eigen::AngleAxisd axis(pose.linear());
@@ -352,9 +338,8 @@ JointWarpRound warp_jointly(const DeformationGraph& graph, std::span<const ViewP
         for (std::size_t n = 0; n < graph.nodes().size(); ++n) {
             const Vector6 step = steps[i].segment<6>(static_cast<Index>(6 * n));
             out.step_m = std::max(out.step_m, step.tail<3>().norm());
-            Pose next = motion_about(graph.nodes()[n].cast<double>(), step) * views[i].moved[n];
-            next.linear() = Eigen::Quaterniond(next.linear()).normalized().toRotationMatrix();
-            views[i].moved[n] = next;
+            views[i].moved[n] =
+                moved(motion_about(graph.nodes()[n].cast<double>(), step), views[i].moved[n]);
         }
         views[i].update_motions();
     }

@@ -59,12 +59,4 @@ std::vector<NumberedView> MovingSubject::take_views() {
     return std::move(views_);
 }
 
-void move(const Eigen::Isometry3d& by, geometry::TriangleMesh& mesh) {
-    const Eigen::Isometry3f motion = by.cast<float>();
-    for (Vec3f& p : mesh.positions)
-        p = motion * p;
-    for (Vec3f& n : mesh.normals)
-        n = motion.linear() * n;
-}
-
 } // namespace toile::scan

@@ -2,6 +2,7 @@
 // scanners of moving people are fed.
 #pragma once
 
+#include "scan/closing.h"
 #include "scan/intake.h"
 #include "scan/template_motion.h"
 
@@ -55,8 +56,5 @@ class MovingSubject {
     std::vector<std::uint8_t> labels_;
     TemplatePoses poses_;
 };
-
-/// Moves a surface with normals.
-void move(const Eigen::Isometry3d& by, geometry::TriangleMesh& mesh);
 
 } // namespace toile::scan

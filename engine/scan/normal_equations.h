@@ -22,6 +22,13 @@ inline Pose motion(const Vector6& step) {
     return out;
 }
 
+/// The same about a point that is not the origin.
+inline Pose motion_about(const Vec3d& about, const Vector6& step) {
+    Pose out = motion(step);
+    out.translation() += about - out.linear() * about;
+    return out;
+}
+
 /// `move` after `pose`, kept rigid: rounding would double with every prediction from a prediction.
 inline Pose moved(const Pose& move, const Pose& pose) {
     Pose out = move * pose;

@@ -1,18 +1,13 @@
 #include "scan/part_registration.h"
 
 #include "core/error.h"
+#include "scan/normal_equations.h"
 
-#include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <string>
 
 namespace toile::scan {
 namespace {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 std::size_t index(BodyGroup group) {
     return static_cast<std::size_t>(group);
@@ -65,11 +60,6 @@ class GroupMove {
     }
 
   private:
-    struct Sums {
-        Matrix6 h = Matrix6::Zero();
-        Vector6 g = Vector6::Zero();
-    };
-
     /// Gauss-Newton with pairs that become closer; collect(move, reach, sums).
     template <class Collect>
     [[nodiscard]] Pose descend(float start_reach, const Collect& collect) const {
@@ -82,7 +72,7 @@ class GroupMove {
             hold_joint(out, sums);
             const Vector6 step = -sums.h.ldlt().solve(sums.g);
             if (!step.allFinite()) break;
-            out = about(step) * out;
+            out = motion_about(layout_.joint(group_), step) * out;
         }
         return out;
     }
@@ -106,13 +96,9 @@ class GroupMove {
     void add(const Vec3f& p, const Vec3f& m, const Vec3f& q, const Vec3f& n, float reach,
              Sums& sums) const {
         if ((p - q).squaredNorm() > reach * reach || n.dot(m) < std::cos(options_.angle)) return;
+        constexpr double kHuber_m = 0.005;
         const Vec3f arm = p - layout_.joint(group_).cast<float>();
-        const auto off = static_cast<double>(n.dot(p - q));
-        const double weight = std::min(1.0, 0.005 / std::max(1e-12, std::abs(off)));
-        Vector6 row;
-        row << arm.cross(n).cast<double>(), n.cast<double>();
-        sums.h += weight * row * row.transpose();
-        sums.g += weight * off * row;
+        sums.add(arm, n, static_cast<double>(n.dot(p - q)), 1.0, kHuber_m);
     }
 
     /// As some readings: a limb stays at its joint, and does not turn about itself for nothing.
@@ -125,15 +111,6 @@ class GroupMove {
         sums.h.topLeftCorner<3, 3>().diagonal().array() += kReadings * kTurnArm_m * kTurnArm_m;
     }
 
-    [[nodiscard]] Pose about(const Vector6& step) const {
-        const Vec3d joint = layout_.joint(group_), turn = step.head<3>();
-        Pose out = Pose::Identity();
-        if (turn.norm() > 1e-12)
-            out.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
-        out.translation() = joint - out.linear() * joint + step.tail<3>();
-        return out;
-    }
-
     const PartLayout& layout_;
     BodyGroup group_;
     const PartRegistrationOptions& options_;
@@ -143,9 +120,7 @@ class GroupMove {
 void carry(const PartLayout& layout, BodyGroup group, const Pose& move, WarpedView& view) {
     for (std::size_t n = 0; n < layout.node_groups().size(); ++n) {
         if (!PartLayout::hangs_on(layout.node_groups()[n], group)) continue;
-        Pose next = move * view.moved[n];
-        next.linear() = Eigen::Quaterniond(next.linear()).normalized().toRotationMatrix();
-        view.moved[n] = next;
+        view.moved[n] = moved(move, view.moved[n]);
     }
     view.update_motions();
 }

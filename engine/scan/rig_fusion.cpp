@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "scan/normal_equations.h"
+#include "scan/subject.h"
+#include "scan/tracking.h"
 
 #include <numbers>
 
@@ -20,21 +22,8 @@ struct RigSystem {
 
 namespace {
 
-constexpr float kTrackingVoxel_m = 0.01f, kTrackingTruncation_m = 0.04f;
-constexpr double kLeastOverlap = 0.5; // of an instant that fits
-constexpr double kMostRms_m = 0.015;
-
 double angle_of(const Pose& motion) {
     return Eigen::AngleAxisd(motion.linear()).angle();
-}
-
-/// A motion so many times over, or a share of it.
-Pose times_over(const Pose& motion, double times) {
-    const Eigen::AngleAxisd turn(motion.linear());
-    Pose out = Pose::Identity();
-    out.linear() = Eigen::AngleAxisd(times * turn.angle(), turn.axis()).toRotationMatrix();
-    out.translation() = times * motion.translation();
-    return out;
 }
 
 /// Of all readings, in the world.
@@ -77,10 +66,7 @@ RigFusion::~RigFusion() = default;
 bool RigFusion::add(std::vector<CameraView> instant) {
     if (instant.empty()) return false;
     if (!model_) {
-        VolumeOptions coarse;
-        coarse.voxel_m = kTrackingVoxel_m;
-        coarse.truncation_m = kTrackingTruncation_m;
-        model_ = std::make_unique<Volume>(Vec3f::Zero(), coarse);
+        model_ = std::make_unique<Volume>(Vec3f::Zero(), kTrackingVolume);
         Pose first = Pose::Identity();
         first.translation() = -middle_of(instant, cameras_);
         keep(std::move(instant), first);
@@ -133,28 +119,15 @@ Registered RigFusion::tracked(std::span<const RigView> views) const {
             ? Pose::Identity()
             : times_over(last * instants_[instants_.size() - 2].inverse(),
                          static_cast<double>(missed_ + 1) / static_cast<double>(gap_));
-    struct Try {
-        Pose start;
-        std::array<float, 2> reach_m;
-    };
-    Registered best;
-    for (const Try& attempt : {Try{step * last, {0.04f, 0.025f}}, Try{step * last, {0.1f, 0.04f}},
-                               Try{last, {0.1f, 0.04f}}}) {
-        Registered found;
-        found.pose = attempt.start;
-        for (const float reach : attempt.reach_m) {
-            RegistrationOptions options;
-            options.reach_m = reach;
-            std::vector<SurfaceMap> maps;
-            for (const RigView& seen : views)
-                maps.push_back(raycast(*model_, *seen.view, kStride, reach,
-                                       found.pose * seen.rig_from_camera, rows_));
-            found = register_rig(views, maps, found.pose, options, rows_);
-        }
-        if (found.overlap > best.overlap) best = found;
-        if (best.overlap > 0.7 && best.rms_m < kMostRms_m) break;
-    }
-    return best;
+    return track_on(last, step, [&](const Pose& start, float reach) {
+        RegistrationOptions options;
+        options.reach_m = reach;
+        std::vector<SurfaceMap> maps;
+        for (const RigView& seen : views)
+            maps.push_back(
+                raycast(*model_, *seen.view, kStride, reach, start * seen.rig_from_camera, rows_));
+        return register_rig(views, maps, start, options, rows_);
+    });
 }
 
 /// Where the subject turned, any two cameras see the same places, one after the other; before a
@@ -287,16 +260,9 @@ FusedSurface RigFusion::finish(const std::optional<geometry::Plane>& floor,
         fusion.add_at(std::move(views_[i]), first_from_scan * pose_of(i));
     views_.clear();
     std::optional<geometry::Plane> ground;
-    if (floor) {
-        const Eigen::Isometry3f move = world.inverse().cast<float>();
-        ground = geometry::Plane::through(move * Vec3f(floor->offset * floor->normal),
-                                          move.linear() * floor->normal);
-    }
+    if (floor) ground = moved(world.inverse(), *floor);
     FusedSurface out = fusion.finish(ground, progress);
-    for (Vec3f& p : out.mesh.positions)
-        p = (world * p.cast<double>()).cast<float>();
-    for (Vec3f& n : out.mesh.normals)
-        n = world.linear().cast<float>() * n;
+    move(world, out.mesh);
     return out;
 }
 

@@ -22,4 +22,12 @@ struct Subject {
 /// radian.
 [[nodiscard]] Subject find_subject(const Picture& picture, const Vec3f& up);
 
+/// A plane in other coordinates: `motion` leads there.
+[[nodiscard]] inline geometry::Plane moved(const Eigen::Isometry3d& motion,
+                                           const geometry::Plane& plane) {
+    const Eigen::Isometry3f move = motion.cast<float>();
+    return geometry::Plane::through(move * Vec3f(plane.offset * plane.normal),
+                                    move.linear() * plane.normal);
+}
+
 } // namespace toile::scan

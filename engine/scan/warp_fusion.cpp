@@ -14,8 +14,8 @@ namespace {
 class WarpedPlaces : public ViewPlaces {
   public:
     WarpedPlaces(const DeformationGraph& graph, const geometry::TriangleMesh& shape,
-                 const std::vector<WarpedView>& views)
-        : graph_(graph), shape_(shape), surface_(shape.positions, shape.triangles) {
+                 const geometry::NearestSurface& surface, const std::vector<WarpedView>& views)
+        : graph_(graph), shape_(shape), surface_(surface) {
         for (const WarpedView& view : views)
             inverse_.push_back(view.inverse_motions());
     }
@@ -33,7 +33,7 @@ class WarpedPlaces : public ViewPlaces {
   private:
     const DeformationGraph& graph_;
     const geometry::TriangleMesh& shape_;
-    geometry::NearestSurface surface_;
+    const geometry::NearestSurface& surface_;
     std::vector<std::vector<Warp>> inverse_; // (views) (nn)
 };
 
@@ -56,7 +56,7 @@ class WarpFusion {
     [[nodiscard]] Volume fused() const;
     [[nodiscard]] double loop_rms() const;
     [[nodiscard]] double surface_rms(const Volume& volume) const;
-    [[nodiscard]] double template_distance(const geometry::NearestSurface& shape) const;
+    [[nodiscard]] double template_distance() const;
     void each_view(const std::function<void(std::size_t)>& work) const {
         rows_(static_cast<std::uint32_t>(views_.size()), 1,
               [&](std::uint32_t begin, std::uint32_t end) {
@@ -70,7 +70,8 @@ class WarpFusion {
     geometry::TriangleMesh shape_;  // in the scan's coordinates: about the template's middle
     Pose first_ = Pose::Identity(); // scan from the first camera
     DeformationGraph graph_;
-    std::optional<PartLayout> layout_; // when the limbs were followed
+    std::optional<geometry::NearestSurface> surface_; // of the template
+    std::optional<PartLayout> layout_;                // when the limbs were followed
     std::vector<WarpedView> views_;
     WarpFusionReport report_;
 };
@@ -90,6 +91,7 @@ WarpFusion::WarpFusion(std::vector<NumberedView> views, const MovingTemplate& bo
     graph_.shift(-middle.cast<float>());
     for (Vec3f& p : shape_.positions)
         p -= middle.cast<float>();
+    surface_.emplace(shape_.positions, shape_.triangles);
     for (std::size_t i = 0; i < views.size(); ++i) {
         WarpedView view;
         view.view = std::move(views[i].view);
@@ -117,9 +119,8 @@ void WarpFusion::bind_all() {
 /// Where the template is the person's own surface, limbs that are elsewhere were not followed.
 void WarpFusion::leave_out_astray() {
     if (!layout_) return;
-    const geometry::NearestSurface surface(shape_.positions, shape_.triangles);
-    if (template_distance(surface) < options_.likely_m)
-        report_.limbs_astray = scan::leave_out_astray(*layout_, surface, {}, views_, rows_);
+    if (template_distance() < options_.likely_m)
+        report_.limbs_astray = scan::leave_out_astray(*layout_, *surface_, {}, views_, rows_);
 }
 
 /// What the views of the end of the turn see of the start, off each other.
@@ -174,11 +175,10 @@ void WarpFusion::register_all(const std::function<void(double)>& progress) {
 /// taken back and is the last.
 void WarpFusion::register_parts_first(const PartStage& parts) {
     const PartLayout& layout = layout_.emplace(graph_, shape_, parts.groups);
-    const geometry::NearestSurface surface(shape_.positions, shape_.triangles);
     const std::vector<ViewPair> pairs = view_pairs();
     const auto measured = [&] { return residual(views_, pairs, parts.residual_reach_m, rows_); };
     report_.residuals_m.push_back(measured());
-    follow_parts(graph_, layout, shape_, surface, parts.options, views_, rows_);
+    follow_parts(graph_, layout, shape_, *surface_, parts.options, views_, rows_);
     bind_all();
     report_.residuals_m.push_back(measured());
     for (int k = 0; k < parts.iterations; ++k) {
@@ -272,13 +272,13 @@ double WarpFusion::surface_rms(const Volume& volume) const {
 }
 
 /// Median distance of the readings from the template.
-double WarpFusion::template_distance(const geometry::NearestSurface& shape) const {
+double WarpFusion::template_distance() const {
     std::vector<float> off;
     for (const WarpedView& view : views_) {
         const PulledView seen = pulled(view);
         for (std::size_t p = 0; p < seen.points.size(); p += 37)
             if (seen.points[p].x() == seen.points[p].x())
-                off.push_back(shape.nearest(seen.points[p]).distance);
+                off.push_back(surface_->nearest(seen.points[p]).distance);
     }
     if (off.empty()) return 1.0;
     const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
@@ -289,28 +289,21 @@ double WarpFusion::template_distance(const geometry::NearestSurface& shape) cons
 WarpedSurface WarpFusion::surface(const std::optional<geometry::Plane>& floor) {
     const Volume volume = fused();
     std::optional<geometry::Plane> ground;
-    if (floor) {
-        const Eigen::Isometry3f move = first_.cast<float>();
-        ground = geometry::Plane::through(move * Vec3f(floor->offset * floor->normal),
-                                          move.linear() * floor->normal);
-    }
+    if (floor) ground = moved(first_, *floor);
     std::vector<const DepthView*> views;
     for (const WarpedView& view : views_)
         views.push_back(&view.view);
-    const WarpedPlaces places(graph_, shape_, views_);
-    const geometry::NearestSurface likely(shape_.positions, shape_.triangles);
-    report_.template_off_m = template_distance(likely);
+    const WarpedPlaces places(graph_, shape_, *surface_, views_);
+    report_.template_off_m = template_distance();
     ClosedSurface closed =
         closed_surface(volume, views, places, ground,
-                       report_.template_off_m < options_.likely_m ? &likely : nullptr, rows_);
+                       report_.template_off_m < options_.likely_m ? &*surface_ : nullptr, rows_);
     for (int round = 0; round < options_.smoothing_rounds; ++round)
         smooth(closed.mesh);
     WarpedSurface out;
     out.colors = vertex_colors(closed.mesh, views, places, rows_);
     out.mesh = std::move(closed.mesh);
-    const Eigen::Isometry3f back = first_.inverse().cast<float>();
-    for (Vec3f& p : out.mesh.positions)
-        p = back * p;
+    move(first_.inverse(), out.mesh);
     report_.surface_rms_m = surface_rms(volume);
     report_.dropped_pieces = closed.dropped_pieces;
     report_.guessed_share = closed.guessed_share;

@@ -72,7 +72,7 @@ class FusionScanner {
                                                         std::to_string(streams.size()) +
                                                         " were named");
         try {
-            std::vector<fusion::SessionCamera> cameras;
+            std::vector<toile::scan::IntakeCamera> cameras;
             for (std::uint32_t c = 0; c < streams.size(); ++c) {
                 cameras.push_back(camera_of(streams[c]));
                 cameras_.push_back({streams[c].camera,
@@ -134,7 +134,7 @@ class FusionScanner {
         return out;
     }
 
-    static fusion::SessionCamera camera_of(const toile_stream& stream) {
+    static toile::scan::IntakeCamera camera_of(const toile_stream& stream) {
         const toile::boundary::StreamCamera camera = toile::boundary::camera_of(stream);
         return {camera.intrinsics, camera.world_from_camera};
     }

@@ -2,6 +2,7 @@
 // turns; or of several that are fixed to each other and know where they stand.
 #pragma once
 
+#include "scan/intake.h"
 #include "scan/rig_fusion.h"
 
 #include <deque>
@@ -15,11 +16,6 @@ struct SessionOptions {
     bool choose_radius = true;   ///< rougher readings are smoothed more widely
     int averaged_frames = 1;     ///< of so many frames in a row one picture is made
     scan::CameraFreedom cameras; ///< how far several are corrected by what they see
-};
-
-struct SessionCamera {
-    imaging::Intrinsics intrinsics;
-    std::optional<Eigen::Isometry3d> world_from_camera;
 };
 
 struct SessionResult {
@@ -38,7 +34,8 @@ struct SessionPicture {
 /// \throw Error wherever nothing can be made of what was fed, saying why
 class FusionSession {
   public:
-    FusionSession(std::vector<SessionCamera> cameras, const SessionOptions& options, RowLoop rows);
+    FusionSession(std::vector<scan::IntakeCamera> cameras, const SessionOptions& options,
+                  RowLoop rows);
 
     /// Pictures of one instant.
     void add(std::span<const SessionPicture> instant);
@@ -52,13 +49,11 @@ class FusionSession {
     };
     [[nodiscard]] std::optional<Seen> use(const SessionPicture& picture);
     void keep(std::vector<Seen> instant);
-    [[nodiscard]] Vec3f up(std::size_t camera) const;
     [[nodiscard]] bool several() const { return cameras_.size() > 1; }
-    [[nodiscard]] Eigen::Isometry3d upright(const geometry::TriangleMesh& mesh) const;
     [[nodiscard]] SessionResult finish_one(const std::function<void(double)>& progress);
     [[nodiscard]] SessionResult finish_rig(const std::function<void(double)>& progress);
 
-    std::vector<SessionCamera> cameras_;
+    std::vector<scan::Intake> cameras_;
     SessionOptions options_;
     RowLoop rows_;
     bool begun_ = false;                                   ///< once a frame shows something

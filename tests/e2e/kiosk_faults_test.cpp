@@ -1,5 +1,4 @@
 // What the mirror goes on through: each fault five times, and each is said on the operator's line.
-#include "core/json.h"
 #include "kiosk_visit.h"
 
 #include <gmock/gmock.h>

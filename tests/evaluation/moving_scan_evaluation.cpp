@@ -4,12 +4,11 @@
 #include "assets/colored_mesh.h"
 #include "assets/files.h"
 #include "core/error.h"
-#include "core/parallel.h"
 #include "host/views.h"
-#include "imaging/capture_folder.h"
 #include "pipeline/body_fit.h"
 #include "scan/warp_session.h"
 #include "scan_errors.h"
+#include "scan_pictures.h"
 
 #include <chrono>
 #include <cstdio>
@@ -155,26 +154,13 @@ void set(Settings& s, const std::string& name, const std::string& value) {
         throw Error(name + ": no such option");
 }
 
-void rows_on_all(std::uint32_t count, std::uint32_t grain,
-                 const std::function<void(std::uint32_t, std::uint32_t)>& body) {
-    parallel_for((count + grain - 1) / grain, [&](std::size_t k) {
-        const auto begin = static_cast<std::uint32_t>(k) * grain;
-        body(begin, std::min(count, begin + grain));
-    });
-}
-
 void run(const std::string& folder, const std::string& truth, const Settings& s) {
     const imaging::CaptureCamera capture = imaging::open_capture(folder).cameras.at(0);
     scan::WarpSession session({capture.intrinsics, capture.world_from_camera}, s.session,
-                              rows_on_all);
+                              evaluation::rows_on_all);
     for (std::uint32_t i = 0; i < capture.frames.size(); i += s.every) {
         const imaging::DepthImage depth = capture.load_depth(i);
-        std::vector<scan::Rgba8> colors;
-        if (const auto color = capture.load_color(i))
-            for (std::size_t k = 0; k + 3 < color->pixels.size(); k += 4)
-                colors.push_back(
-                    {color->pixels[k], color->pixels[k + 1], color->pixels[k + 2], 255});
-        session.add(depth.metres, colors);
+        session.add(depth.metres, evaluation::colors_of(capture, i));
     }
     if (!s.guide.empty()) {
         Guide guide = guide_of(folder, s.guide);

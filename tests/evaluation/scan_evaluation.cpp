@@ -4,11 +4,10 @@
 #include "assets/colored_mesh.h"
 #include "assets/files.h"
 #include "core/error.h"
-#include "core/parallel.h"
-#include "imaging/capture_folder.h"
 #include "scan/fusion.h"
 #include "scan/subject.h"
 #include "scan_errors.h"
+#include "scan_pictures.h"
 
 #include <chrono>
 #include <cstdio>
@@ -84,15 +83,6 @@ void set(Settings& s, const std::string& name, const std::string& value) {
         throw Error(name + ": no such option");
 }
 
-void rows_on_all(std::uint32_t count, std::uint32_t grain,
-                 const std::function<void(std::uint32_t, std::uint32_t)>& body) {
-    const std::uint32_t ranges = (count + grain - 1) / grain;
-    parallel_for(ranges, [&](std::size_t k) {
-        const auto begin = static_cast<std::uint32_t>(k) * grain;
-        body(begin, std::min(count, begin + grain));
-    });
-}
-
 class Clock {
   public:
     void lap(const char* what) {
@@ -112,7 +102,7 @@ void run(const std::string& folder, const std::string& truth_file, const Setting
     const Eigen::Isometry3d world =
         capture.world_from_camera.value_or(Eigen::Isometry3d::Identity());
     const Vec3f up = (world.linear().transpose() * Vec3d::UnitY()).cast<float>();
-    scan::RigidFusion fusion(s.fusion, rows_on_all);
+    scan::RigidFusion fusion(s.fusion, evaluation::rows_on_all);
     std::optional<geometry::Plane> floor;
     const auto poses = s.known_poses ? true_poses(folder) : std::vector<scan::Pose>{};
     double load = 0, filter = 0, track = 0;
@@ -120,17 +110,13 @@ void run(const std::string& folder, const std::string& truth_file, const Setting
         const auto t0 = std::chrono::steady_clock::now();
         const imaging::DepthImage depth = capture.load_depth(i);
         const auto t1 = std::chrono::steady_clock::now();
-        const auto color = capture.load_color(i);
-        std::vector<scan::Rgba8> colors;
-        if (color)
-            for (std::size_t k = 0; k + 3 < color->pixels.size(); k += 4)
-                colors.push_back(
-                    {color->pixels[k], color->pixels[k + 1], color->pixels[k + 2], 255});
+        const auto colors = evaluation::colors_of(capture, i);
         const scan::Picture picture{capture.intrinsics, depth.metres, colors};
         const scan::Subject subject = scan::find_subject(picture, up);
         if (!subject.trouble.empty()) throw Error(subject.trouble);
         if (i == 0) floor = subject.floor;
-        scan::DepthView view = scan::filtered_view(picture, subject.mask, s.filter, rows_on_all);
+        scan::DepthView view =
+            scan::filtered_view(picture, subject.mask, s.filter, evaluation::rows_on_all);
         const auto t2 = std::chrono::steady_clock::now();
         if (s.known_poses)
             fusion.add_at(std::move(view), poses.at(i));

@@ -1,5 +1,7 @@
 #include "apps/kiosk/garment_cards.h"
 
+#include "apps/kiosk/inks.h"
+
 #include <algorithm>
 
 namespace toile::apps::kiosk {
@@ -10,10 +12,6 @@ using render::Ink;
 using render::Rect;
 using render::TextStyle;
 
-constexpr Ink kWhite{255, 255, 255, 255};
-constexpr Ink kSoft{214, 219, 222, 255};
-constexpr Ink kAccent{244, 186, 96, 255};
-constexpr Ink kPanel{12, 17, 20, 176};
 constexpr Ink kPaper{240, 240, 238, 255};
 
 const CarouselItem& item_beside(const ScreenView& view, int by) {

@@ -1,6 +1,7 @@
 #include "apps/kiosk/painter.h"
 
 #include "apps/kiosk/garment_cards.h"
+#include "apps/kiosk/inks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +15,7 @@ using render::Ink;
 using render::Rect;
 using render::TextStyle;
 
-constexpr Ink kWhite{255, 255, 255, 255};
-constexpr Ink kSoft{214, 219, 222, 255};
-constexpr Ink kAccent{244, 186, 96, 255};
 constexpr Ink kButton{18, 24, 28, 208};
-constexpr Ink kPanel{12, 17, 20, 176};
 constexpr Ink kTop{35, 58, 66, 255};
 constexpr Ink kBottom{12, 18, 22, 255};
 
