@@ -4,6 +4,7 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,8 +12,11 @@
 namespace toile::body {
 namespace {
 
-constexpr float kStep = 0.004f;       // metres between the planes that are tried
-constexpr float kOnMidline = 0.012f;  // metres from x = 0 that still count as the midline
+constexpr float kStep = 0.004f;      // metres between the planes that are tried
+constexpr float kOnMidline = 0.012f; // metres from x = 0 that still count as the midline
+/// Vertices of the source mesh. Where a trunk stands out most is on many men the belly.
+constexpr std::array<std::uint32_t, 2> kNipples{8454, 1782};
+constexpr std::uint32_t kLowestRib = 10668, kIliacCrest = 10773;
 constexpr float kBelowCrotch = 0.03f; // where the thigh is measured
 
 class Finder {
@@ -71,6 +75,17 @@ class Finder {
         return best;
     }
 
+    /// ISO 8559-1: of the levels between hip bone and ribs the narrowest; where that is an end,
+    /// there is none, and the middle stands for it.
+    [[nodiscard]] std::optional<GirthPlane> narrowest(const Vec3f& low, const Vec3f& high) const {
+        const Vec3f up = Vec3f::UnitY();
+        auto best = extreme(low, high, up, false);
+        const auto lowest = measure(low, up), highest = measure(high, up);
+        if (best && lowest && highest && best->girth >= std::min(lowest->girth, highest->girth))
+            best = measure(0.5f * (low + high), up);
+        return best;
+    }
+
     void find_heights() {
         const auto& positions = person_.rest.positions;
         std::uint32_t top = 0;
@@ -87,21 +102,8 @@ class Finder {
         person_.landmarks["top_of_head"] = top;
         person_.landmarks["crotch"] = crotch;
         crotch_ = positions[crotch].y();
-        // The most forward point of the chest, between waist and armpit.
-        const float low = joint(Joint::chest).y() - 0.02f;
-        const float high = joint(Joint::left_upper_arm).y() - 0.06f;
-        std::uint32_t bust = UINT32_MAX;
-        for (std::uint32_t v = 0; v < positions.size(); ++v) {
-            const Vec3f& p = positions[v];
-            if (person_.parts[v] != Part::torso || p.y() < low || p.y() > high ||
-                std::abs(p.x()) < 0.03f)
-                continue;
-            if (bust == UINT32_MAX || p.z() > positions[bust].z()) bust = v;
-        }
-        if (bust == UINT32_MAX)
-            throw Error("test person '" + person_.id + "': its chest has no front");
-        person_.landmarks["bust_point"] = bust;
-        bust_ = positions[bust].y();
+        person_.landmarks["bust_point"] = kNipples[0];
+        bust_ = 0.5f * (positions[kNipples[0]].y() + positions[kNipples[1]].y());
     }
 
     void trunk() {
@@ -111,9 +113,9 @@ class Finder {
         const Vec3f up = Vec3f::UnitY();
         keep("bust_girth", Joint::chest, measure(at(bust_), up));
         const float hips = joint(Joint::left_upper_leg).y();
-        const float waist_low = hips + 0.25f * (bust_ - hips);
-        const float waist_high = hips + 0.75f * (bust_ - hips);
-        keep("waist_girth", Joint::spine, extreme(at(waist_low), at(waist_high), up, false));
+        keep("waist_girth", Joint::spine,
+             narrowest(at(person_.rest.positions[kIliacCrest].y()),
+                       at(person_.rest.positions[kLowestRib].y())));
         const float waist = person_.girths.back().point.y();
         keep("hip_girth", Joint::hips,
              extreme(at(crotch_ + 0.02f), at(std::min(waist, hips + 0.06f)), up, true));

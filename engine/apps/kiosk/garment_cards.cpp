@@ -48,10 +48,8 @@ void draw_neighbours(render::Canvas& canvas, const ScreenView& view) {
     if (view.carousel.size() < 2) return;
     const Measures sizes = measures(canvas.width(), canvas.height());
     const auto w = static_cast<float>(canvas.width());
-    const auto h = static_cast<float>(canvas.height());
-    const float tall = 0.10f * h;
-    const float wide = 0.75f * tall;
-    const float y = h - sizes.margin - 1.2f * sizes.text - tall;
+    const float tall = kCardHeight * static_cast<float>(canvas.height());
+    const float wide = 0.75f * tall, y = sizes.cards;
     draw_card(canvas, item_beside(view, -1), {sizes.margin, y, wide, tall}, false);
     draw_card(canvas, item_beside(view, 1), {w - sizes.margin - wide, y, wide, tall}, false);
 }

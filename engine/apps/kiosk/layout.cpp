@@ -102,7 +102,11 @@ std::vector<Button> lay_out(const std::vector<Action>& offers, int width, int he
                             w - 2.0f * sizes.margin - left.width - right.width);
         right.x = std::clamp(to, left.x + left.width + sizes.margin, w - sizes.edge - right.width);
     }
-    return stacked(columns, middle, sizes, h, seat.person, offers);
+    // Cards of other garments stand beneath; `stack` keeps two margins off the end.
+    const bool cards =
+        std::find(offers.begin(), offers.end(), Action::previous_garment) != offers.end();
+    return stacked(columns, middle, sizes, cards ? sizes.cards + sizes.margin : h, seat.person,
+                   offers);
 }
 
 std::vector<Button> lay_out_looks(const std::vector<Action>& offers, int width, int height,

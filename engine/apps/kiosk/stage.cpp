@@ -73,6 +73,7 @@ Measures measures(int width, int height) {
     out.step = (1.0f + kGap) * out.button;
     out.edge = 0.25f * out.margin;
     out.metre = h / kTall_m;
+    out.cards = h - out.margin - 1.2f * out.text - kCardHeight * h;
     const float wide = std::min(w - 2.0f * out.margin, 1.1f * h);
     out.body = {0.5f * (w - wide), out.margin, wide, h - 2.0f * out.margin};
     return out;

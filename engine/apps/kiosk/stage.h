@@ -15,6 +15,8 @@ enum class Arrangement {
     two_people, ///< each with buttons of their own
 };
 
+inline constexpr float kCardHeight = 0.10f; ///< of the screen's height
+
 /// Sizes that follow from the screen's alone.
 struct Measures {
     float text = 0.0f; ///< letters: a fortieth of the height, what is read from 2.5 m
@@ -23,6 +25,7 @@ struct Measures {
     float button = 0.0f; ///< height of a button
     float step = 0.0f;   ///< from one button to the next below it
     float edge = 0.0f;   ///< between buttons and the screen's edge: a hand held out is there
+    float cards = 0.0f;  ///< top of the cards of the garments beside the chosen one
     float metre = 0.0f;  ///< of a shopper, where hands point to a panel instead of the picture
     render::Rect body;   ///< where sentences stand
 };
