@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "garment/import.h"
 #include "garment/package.h"
+#include "garment/size_chart.h"
 
 #include <cstdio>
 #include <memory>
@@ -107,12 +108,32 @@ void check(const std::string& what, bool as_json) {
 
 /// What `new` was asked for.
 struct NewOptions {
-    fs::path mesh;
+    fs::path mesh, chart;
     fs::path out;
     std::string unit;
     garment::ImportOptions import;
     BlockOptions block;
 };
+
+/// The row of the mesh's size; the others have no mesh.
+void take_chart(const fs::path& file, garment::ImportOptions& import) {
+    std::string others;
+    bool found = false;
+    for (const auto& [name, row] : garment::read_size_chart(file)) {
+        if (name == import.size_name) {
+            import.chart = row;
+            found = true;
+        } else {
+            others += (others.empty() ? "" : ", ") + name;
+        }
+    }
+    if (!found)
+        throw UsageError("garment new --size " + import.size_name + ": " + file.string() +
+                         " has only " + others);
+    if (!others.empty())
+        std::printf("the mesh is size %s; of the chart's %s there is none\n",
+                    import.size_name.c_str(), others.c_str());
+}
 
 void make_new(NewOptions& options) {
     if (!options.block.block.empty()) {
@@ -131,6 +152,7 @@ void make_new(NewOptions& options) {
     std::error_code code;
     if (fs::exists(options.out / "garment.json", code))
         throw Error(options.out.string() + ": holds a garment.json already; choose another --out");
+    if (!options.chart.empty()) take_chart(options.chart, options.import);
     std::optional<body::BodyModel> body;
     if (!options.import.made_on.empty())
         body = body::load_body_model(body::find_avatar(options.import.made_on));
@@ -190,6 +212,13 @@ void add_new(CLI::App& garment) {
         ->capture_default_str();
     command->add_option("--size", options->import.size_name, "Name of the one size that it has")
         ->capture_default_str();
+    command
+        ->add_option("--chart", options->chart,
+                     "Size chart, whose row --size is taken: a table with the columns size, bust, "
+                     "waist, hip ..., of numbers (92) or ranges (88-96), cm or m")
+        ->check(CLI::ExistingFile)
+        ->excludes("--block")
+        ->type_name("FILE.csv");
     command->add_option("--layer", options->import.layer, "0: next to the skin")
         ->check(CLI::Range(0, 15))
         ->capture_default_str();
@@ -198,6 +227,8 @@ void add_new(CLI::App& garment) {
     command->add_option("--licence", options->import.licence, "Its licence")->capture_default_str();
     command->footer("Example: toile garment new --mesh suit.fbx --id suit --made-on man --out "
                     "garments/suit\n"
+                    "         toile garment new --mesh suit.fbx --id suit --kind suit --size L "
+                    "--chart sizes.csv --made-on man --out garments/suit\n"
                     "         toile garment new --block t-shirt --out garments/t-shirt");
     command->callback([options] { make_new(*options); });
 }

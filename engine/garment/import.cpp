@@ -47,6 +47,19 @@ Joined join(const assets::Scene& scene) {
     return out;
 }
 
+/// Takes a mesh named `simulation` out of what is drawn, where the file has it beside others.
+std::optional<assets::Scene> take_simulation(assets::Scene& drawn) {
+    std::vector<std::size_t> cloth, others;
+    for (std::size_t i = 0; i < drawn.nodes.size(); ++i)
+        (is_simulation(drawn, drawn.nodes[i]) ? cloth : others).push_back(i);
+    if (cloth.empty() || others.empty()) return std::nullopt;
+    assets::Scene out, rest;
+    append_nodes(drawn, cloth, out);
+    append_nodes(drawn, others, rest);
+    drawn = std::move(rest);
+    return out;
+}
+
 void transform(assets::Scene& scene, const Eigen::Affine3f& move) {
     const Mat3f for_normals = move.linear().inverse().transpose();
     for (assets::Mesh& mesh : scene.meshes)
@@ -190,8 +203,6 @@ Import import_garment(const std::filesystem::path& mesh, const ImportOptions& op
     const assets::Scene scene = assets::load_scene(mesh);
     GarmentSize size;
     append_nodes(scene, nodes_with_meshes(scene), size.render);
-    for (std::size_t i = 0; i < size.render.nodes.size(); ++i)
-        size.render.nodes[i].name = "render" + (i == 0 ? "" : std::to_string(i));
     Joined joined = join(size.render);
     if (joined.triangles.empty()) throw FileError(mesh.string(), "has no mesh");
 
@@ -203,6 +214,14 @@ Import import_garment(const std::filesystem::path& mesh, const ImportOptions& op
     tell_placement(placement, options, out.findings);
     if (labelled && lay_into_pose(*body, joined, size.render, out.findings))
         joined = join(size.render);
+    if (const auto cloth = take_simulation(size.render)) {
+        joined = join(*cloth);
+        out.findings.emplace_back("its mesh 'simulation' is the cloth, the others are drawn");
+    }
+    for (std::size_t i = 0; i < size.render.nodes.size(); ++i)
+        size.render.nodes[i].name = "render" + (i == 0 ? "" : std::to_string(i));
+    for (assets::Mesh& drawn : size.render.meshes)
+        drawn.name = "render";
 
     MendedMesh mended = mend(joined.positions, joined.triangles);
     if (body != nullptr) {
@@ -225,13 +244,19 @@ Import import_garment(const std::filesystem::path& mesh, const ImportOptions& op
     size.simulation = std::move(mended.mesh);
     size.material_coords = flat.coords;
     size.entry.name = options.size_name;
+    size.entry.chart = options.chart;
     size.entry.mesh = options.size_name + ".glb";
     out.package.manifest.sizes.push_back(size.entry);
     out.package.sizes.push_back(std::move(size));
-    out.findings.emplace_back(
-        std::string(
-            "to fill in by hand in garment.json: maker, licence, kind, fabric, size chart") +
-        (pinned ? "" : ", pins where it must not slip"));
+    const ImportOptions usual;
+    std::string open;
+    if (options.maker == usual.maker) open += "maker, ";
+    if (options.licence == usual.licence) open += "licence, ";
+    if (options.kind == usual.kind) open += "kind, ";
+    if (options.chart.empty()) open += "size chart, ";
+    if (!pinned) open += "pins where it must not slip, ";
+    out.findings.emplace_back("to fill in by hand in garment.json: " + open +
+                              "the true fabric (taken: " + out.package.manifest.fabric.name + ")");
     return out;
 }
 

@@ -13,8 +13,9 @@ struct ImportOptions {
     std::string licence = "not stated";
     std::string kind = "garment";
     std::string size_name = "M";
-    std::string made_on;      ///< avatar id, or "" to leave the mesh where it is
-    std::optional<Unit> unit; ///< nothing: find out
+    std::map<std::string, ChartRange> chart; ///< of that size
+    std::string made_on;                     ///< avatar id, or "" to leave the mesh where it is
+    std::optional<Unit> unit;                ///< nothing: find out
     std::uint32_t layer = 1;
 };
 

@@ -18,12 +18,6 @@ std::string lower(std::string text) {
     return text;
 }
 
-bool is_simulation(const assets::Scene& scene, const assets::Node& node) {
-    if (node.mesh == assets::kNone) return false;
-    return lower(node.name) == kSimulationName ||
-           lower(scene.meshes[static_cast<std::size_t>(node.mesh)].name) == kSimulationName;
-}
-
 /// The simulation mesh's node and the render meshes' nodes; a file with one mesh has it as both.
 struct Roles {
     std::vector<std::size_t> simulation;
@@ -188,6 +182,12 @@ assets::Scene load_checked(const PackageFiles& files, const std::string& mesh) {
 }
 
 } // namespace
+
+bool is_simulation(const assets::Scene& scene, const assets::Node& node) {
+    if (node.mesh == assets::kNone) return false;
+    return lower(node.name) == kSimulationName ||
+           lower(scene.meshes[static_cast<std::size_t>(node.mesh)].name) == kSimulationName;
+}
 
 std::vector<Eigen::Affine3f> world_from_node(const assets::Scene& scene) {
     std::vector<Eigen::Affine3f> world;

@@ -11,6 +11,9 @@ namespace toile::garment {
 bool read_size_meshes(const PackageFiles& files, const SizeEntry& entry, GarmentSize& size,
                       Faults& faults, std::vector<std::string>& notes);
 
+/// The node or its mesh is called `simulation`, in whatever letters.
+[[nodiscard]] bool is_simulation(const assets::Scene& scene, const assets::Node& node);
+
 /// World matrix of every node. Skinned meshes stand where their vertices say, whatever the node.
 [[nodiscard]] std::vector<Eigen::Affine3f> world_from_node(const assets::Scene& scene);
 
