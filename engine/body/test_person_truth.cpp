@@ -16,7 +16,7 @@ constexpr float kStep = 0.004f;      // metres between the planes that are tried
 constexpr float kOnMidline = 0.012f; // metres from x = 0 that still count as the midline
 /// Vertices of the source mesh. Where a trunk stands out most is on many men the belly.
 constexpr std::array<std::uint32_t, 2> kNipples{8454, 1782};
-constexpr std::uint32_t kLowestRib = 10668, kIliacCrest = 10773;
+constexpr std::uint32_t kLowestRib = 10668, kIliacCrest = 10773, kGlutealFold = 10893;
 constexpr float kBelowCrotch = 0.03f; // where the thigh is measured
 
 class Finder {
@@ -75,15 +75,17 @@ class Finder {
         return best;
     }
 
-    /// ISO 8559-1: of the levels between hip bone and ribs the narrowest; where that is an end,
-    /// there is none, and the middle stands for it.
-    [[nodiscard]] std::optional<GirthPlane> narrowest(const Vec3f& low, const Vec3f& high) const {
-        const Vec3f up = Vec3f::UnitY();
-        auto best = extreme(low, high, up, false);
-        const auto lowest = measure(low, up), highest = measure(high, up);
-        if (best && lowest && highest && best->girth >= std::min(lowest->girth, highest->girth))
-            best = measure(0.5f * (low + high), up);
-        return best;
+    /// ISO 8559-1 and ANSUR II: where the buttocks stand out most, above their folds.
+    [[nodiscard]] float fullest_buttocks() const {
+        const auto& positions = person_.rest.positions;
+        const float low = positions[kGlutealFold].y(), high = positions[kIliacCrest].y();
+        const float wide = std::abs(positions[kIliacCrest].x());
+        const Vec3f* best = nullptr;
+        for (const Vec3f& p : positions)
+            if (p.y() > low && p.y() < high && std::abs(p.x()) < wide &&
+                (best == nullptr || p.z() < best->z()))
+                best = &p;
+        return best != nullptr ? best->y() : 0.5f * (low + high);
     }
 
     void find_heights() {
@@ -112,13 +114,10 @@ class Finder {
         };
         const Vec3f up = Vec3f::UnitY();
         keep("bust_girth", Joint::chest, measure(at(bust_), up));
-        const float hips = joint(Joint::left_upper_leg).y();
+        const auto& positions = person_.rest.positions;
         keep("waist_girth", Joint::spine,
-             narrowest(at(person_.rest.positions[kIliacCrest].y()),
-                       at(person_.rest.positions[kLowestRib].y())));
-        const float waist = person_.girths.back().point.y();
-        keep("hip_girth", Joint::hips,
-             extreme(at(crotch_ + 0.02f), at(std::min(waist, hips + 0.06f)), up, true));
+             extreme(at(positions[kIliacCrest].y()), at(positions[kLowestRib].y()), up, false));
+        keep("hip_girth", Joint::hips, measure(at(fullest_buttocks()), up));
         const Vec3f neck = joint(Joint::neck);
         const Vec3f head = joint(Joint::head);
         keep(
