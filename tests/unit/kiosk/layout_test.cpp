@@ -55,8 +55,9 @@ TEST_P(KioskLayout, ButtonsAreOnTheScreenApartAndReadable) {
                 EXPECT_GE(r.y, 0.0f);
                 EXPECT_LE(r.x + r.width, w);
                 EXPECT_LE(r.y + r.height, h);
-                if (screen == ScreenName::mirror) // the cards of other garments stay clear
+                if (screen == ScreenName::mirror) { // the cards of other garments stay clear
                     EXPECT_LE(r.y + r.height, measures(width, height).cards);
+                }
                 EXPECT_GE(r.height, 2.0f * measures(width, height).text);
                 for (std::size_t j = 0; j < i; ++j) {
                     const render::Rect& o = buttons[j].rect;
