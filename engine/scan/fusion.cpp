@@ -45,6 +45,10 @@ double distance_of(const Pose& motion, const DepthView& view, const Pose& pose) 
     return count > 0.0 ? std::sqrt(square / count) : 0.0;
 }
 
+bool fits(const Registered& found) {
+    return found.overlap >= kLeastOverlap && found.rms_m <= kMostRms_m;
+}
+
 } // namespace
 
 RigidFusion::RigidFusion(const FusionOptions& options, RowLoop rows)
@@ -68,32 +72,51 @@ void RigidFusion::add_at(DepthView view, const Pose& first_from_camera) {
     keep(std::move(view), first_ * first_from_camera, fed_++);
 }
 
-void RigidFusion::add(DepthView view) {
+void RigidFusion::add(DepthView view, const std::optional<Pose>& likely) {
     const std::uint32_t number = fed_++;
     if (!model_) {
         begin(view);
         keep(std::move(view), first_, number);
         return;
     }
-    const Registered found = tracked(view);
-    if (found.overlap < kLeastOverlap || found.rms_m > kMostRms_m)
-        ++report_.lost_frames;
-    else
+    Registered found = tracked(view);
+    if (likely && !fits(found)) {
+        found.pose = first_ * *likely;
+        const Pose told = found.pose;
+        for (const float reach : {0.1f, 0.04f})
+            found = registered(view, found.pose, reach);
+        // What it shows may not have been seen before.
+        if (!fits(found) && can_have_turned_to(told, number))
+            return keep(std::move(view), told, number);
+    }
+    if (fits(found))
         keep(std::move(view), found.pose, number);
+    else
+        ++report_.lost_frames;
+}
+
+/// No other turn than a slow one, from where the last view was.
+bool RigidFusion::can_have_turned_to(const Pose& pose, std::uint32_t number) const {
+    constexpr double kOnce_rad = 0.35, kEachView_rad = 0.2;
+    const Eigen::AngleAxisd turn(pose.linear() * poses_.back().linear().transpose());
+    return std::abs(turn.angle()) < kOnce_rad + kEachView_rad * (number - numbers_.back());
+}
+
+Registered RigidFusion::registered(const DepthView& view, const Pose& start, float reach) const {
+    constexpr int kStride = 2;
+    RegistrationOptions options;
+    options.reach_m = reach;
+    const SurfaceMap map = raycast(*model_, view, kStride, reach, start, rows_);
+    return register_view(view, map, start, options, rows_);
 }
 
 /// Against the model, from where the motion would go on, or else from where the last view was.
 Registered RigidFusion::tracked(const DepthView& view) const {
-    constexpr int kStride = 2;
     const Pose& last = poses_.back();
     const Pose step =
         poses_.size() < 2 ? Pose::Identity() : last * poses_[poses_.size() - 2].inverse();
-    return track_on(last, step, [&](const Pose& start, float reach) {
-        RegistrationOptions options;
-        options.reach_m = reach;
-        const SurfaceMap map = raycast(*model_, view, kStride, reach, start, rows_);
-        return register_view(view, map, start, options, rows_);
-    });
+    return track_on(last, step,
+                    [&](const Pose& start, float reach) { return registered(view, start, reach); });
 }
 
 std::vector<std::size_t> RigidFusion::all() const {

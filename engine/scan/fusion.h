@@ -53,7 +53,9 @@ class RigidFusion {
     RigidFusion& operator=(const RigidFusion&) = delete;
 
     /// Places a view against what was seen before; one that does not fit is lost and counted.
-    void add(DepthView view);
+    /// `likely`: the first camera from this one as something else tells: where what was seen before
+    /// does not fit, it is tried from there, and taken as it is if it could be a turn so far.
+    void add(DepthView view, const std::optional<Pose>& likely = std::nullopt);
     /// Places a view where its camera is known to stand: the first camera from this one.
     void add_at(DepthView view, const Pose& first_from_camera);
     [[nodiscard]] std::size_t count() const { return views_.size(); }
@@ -71,6 +73,9 @@ class RigidFusion {
     void begin(const DepthView& first);
     void keep(DepthView view, const Pose& pose, std::uint32_t number);
     [[nodiscard]] Registered tracked(const DepthView& view) const;
+    [[nodiscard]] Registered registered(const DepthView& view, const Pose& start,
+                                        float reach) const;
+    [[nodiscard]] bool can_have_turned_to(const Pose& pose, std::uint32_t number) const;
     void close_loop();
     void settle();
     [[nodiscard]] double surface_rms(const Volume& volume) const;

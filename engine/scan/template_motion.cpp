@@ -6,6 +6,30 @@
 #include <string>
 
 namespace toile::scan {
+namespace {
+
+/// A motion between two, by a share; `about` (in what they lead to) goes straight.
+Pose between(const Pose& a, const Pose& b, double share, const Vec3d& about) {
+    const Eigen::Quaterniond from(a.linear()), to(b.linear());
+    const Vec3d start = a.inverse() * about, end = b.inverse() * about;
+    Pose out = Pose::Identity();
+    out.linear() = from.slerp(share, to).toRotationMatrix();
+    out.translation() = about - out.linear() * (start + share * (end - start));
+    return out;
+}
+
+} // namespace
+
+Pose turned_evenly(const WholeMotion& known, std::uint32_t number, const Vec3d& about) {
+    const auto after = known.lower_bound(number);
+    if (after == known.end()) return std::prev(after)->second;
+    if (after->first == number || after == known.begin()) return after->second;
+    const auto before = std::prev(after);
+    return between(before->second, after->second,
+                   static_cast<double>(number - before->first) /
+                       static_cast<double>(after->first - before->first),
+                   about);
+}
 
 Pose whole_motion(std::span<const Vec3f> from, std::span<const Vec3f> to) {
     constexpr int kRounds = 4;
@@ -38,6 +62,7 @@ TemplateMotion::TemplateMotion(const DeformationGraph& graph, const TemplatePose
         Instant instant;
         const auto known = whole_.find(number);
         instant.whole = known != whole_.end() ? known->second : whole_motion(positions, first);
+        at_instants_[number] = instant.whole;
         const Pose back = instant.whole.inverse();
         for (const Pose& node : node_motions(graph, positions, first))
             instant.nodes.push_back(node * back);
@@ -45,26 +70,9 @@ TemplateMotion::TemplateMotion(const DeformationGraph& graph, const TemplatePose
     }
 }
 
-/// A motion between two, by a share; `about` (in what they lead to) goes straight.
-Pose TemplateMotion::between(const Pose& a, const Pose& b, double share, const Vec3d& about) const {
-    const Eigen::Quaterniond from(a.linear()), to(b.linear());
-    const Vec3d start = a.inverse() * about, end = b.inverse() * about;
-    Pose out = Pose::Identity();
-    out.linear() = from.slerp(share, to).toRotationMatrix();
-    out.translation() = about - out.linear() * (start + share * (end - start));
-    return out;
-}
-
 Pose TemplateMotion::whole_at(std::uint32_t number) const {
     if (const auto known = whole_.find(number); known != whole_.end()) return known->second;
-    const auto after = instants_.lower_bound(number);
-    if (after == instants_.end()) return std::prev(after)->second.whole;
-    if (after->first == number || after == instants_.begin()) return after->second.whole;
-    const auto before = std::prev(after);
-    return between(before->second.whole, after->second.whole,
-                   static_cast<double>(number - before->first) /
-                       static_cast<double>(after->first - before->first),
-                   middle_);
+    return turned_evenly(at_instants_, number, middle_);
 }
 
 std::vector<Pose> TemplateMotion::at(std::uint32_t number) const {

@@ -18,6 +18,11 @@ using WholeMotion = std::map<std::uint32_t, Pose>;
 /// less.
 [[nodiscard]] Pose whole_motion(std::span<const Vec3f> from, std::span<const Vec3f> to);
 
+/// At any view, between those that are known: evenly, and `about` (in what they lead to) goes
+/// straight. Before the first and after the last as there. Not of none.
+[[nodiscard]] Pose turned_evenly(const WholeMotion& known, std::uint32_t number,
+                                 const Vec3d& about);
+
 /// (nn) scan from camera of each node at any view. The whole moves as `whole` says; where that does
 /// not know a view, it turns evenly about the template's middle from instant to instant. Within it
 /// each node goes its own way between two instants.
@@ -34,13 +39,10 @@ class TemplateMotion {
         Pose whole;              ///< scan from camera, of all of it
         std::vector<Pose> nodes; ///< (nn) beside that: in the scan's coordinates
     };
-    [[nodiscard]] Pose between(const Pose& a, const Pose& b, double share,
-                               const Vec3d& about) const;
-
     [[nodiscard]] Pose whole_at(std::uint32_t number) const;
 
     const DeformationGraph& graph_;
-    WholeMotion whole_;
+    WholeMotion whole_, at_instants_;
     Vec3d middle_ = Vec3d::Zero();
     std::map<std::uint32_t, Instant> instants_;
 };

@@ -98,20 +98,26 @@ MovingTemplate WarpSession::stiff_template(nlohmann::ordered_json& report) const
 MovingTemplate WarpSession::body_template(nlohmann::ordered_json& report) const {
     MovingTemplate out{subject_.shape(), subject_.poses(), {}};
     RigidFusion fusion(rough(), rows_);
+    const std::vector<Vec3f> first = out.poses.begin()->second;
+    WholeMotion fitted;
+    for (const auto& [number, positions] : out.poses)
+        fitted[number] = whole_motion(positions, first);
+    Vec3d middle = Vec3d::Zero();
+    for (const Vec3f& p : first)
+        middle += p.cast<double>() / static_cast<double>(first.size());
     std::vector<std::uint32_t> numbers;
     for (const NumberedView& view : subject_.views()) {
         if (view.number < out.poses.begin()->first) continue;
         numbers.push_back(view.number);
-        fusion.add(view.view);
+        fusion.add(view.view, turned_evenly(fitted, view.number, middle));
     }
     for (const auto& [at, pose] : fusion.settled())
         out.whole[numbers[at]] = pose;
     report["frames_lost"] = numbers.size() - out.whole.size();
-    const std::vector<Vec3f> first = out.poses.begin()->second;
     std::erase_if(out.poses, [&](const auto& instant) {
         const auto known = out.whole.find(instant.first);
         if (known == out.whole.end()) return false;
-        const Pose told = whole_motion(instant.second, first);
+        const Pose& told = fitted.at(instant.first);
         double off = 0.0;
         for (const Vec3f& p : instant.second)
             off += (told * p.cast<double>() - known->second * p.cast<double>()).norm();
