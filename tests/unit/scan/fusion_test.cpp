@@ -190,6 +190,30 @@ TEST(Fusion, AViewAfterAJumpIsLostAndTheRestGoesOn) {
     EXPECT_EQ(scan.frames, (std::vector<std::uint32_t>{0, 1, 3}));
 }
 
+TEST(Fusion, AfterAJumpWhatIsLikelyHelpsIfItCouldBe) {
+    Pose jumped = camera_around(0.2);
+    jumped.translation().x() += 0.3;
+    const Pose told = camera_around(0.0).inverse() * jumped;
+    const auto lost = [&](const std::optional<Pose>& likely) {
+        RigidFusion fusion({}, serial_rows);
+        fusion.add(the_lump().view(camera_around(0.0)));
+        fusion.add(the_lump().view(camera_around(0.1)));
+        fusion.add(the_lump().view(jumped), likely);
+        const FusedSurface out = fusion.finish(std::nullopt, [](double) {});
+        if (out.poses.size() == 3) {
+            EXPECT_LT((out.poses[2].translation() - told.translation()).norm(), 0.01);
+            EXPECT_LT(angle_of(told.inverse() * out.poses[2]), 0.02);
+        }
+        return out.report.lost_frames;
+    };
+    EXPECT_EQ(lost(std::nullopt), 1u);
+    Pose near = told;
+    near.translation().x() += 0.02;
+    EXPECT_EQ(lost(near), 0u);
+    EXPECT_EQ(lost(camera_around(0.0).inverse() * camera_around(std::numbers::pi)), 1u)
+        << "nothing turns half round from one view to the next";
+}
+
 TEST(Fusion, OneViewIsNotEnough) {
     RigidFusion none({}, serial_rows), one({}, serial_rows);
     EXPECT_THROW((void)none.finish(std::nullopt, [](double) {}), std::runtime_error);
