@@ -247,7 +247,7 @@ bool read_size_meshes(const PackageFiles& files, const SizeEntry& entry, Garment
         const assets::Scene scene = load_checked(files, entry.mesh);
         const Roles roles = find_roles(scene, shown);
         const std::size_t node = roles.simulation.front();
-        assets::Mesh mesh = baked_mesh(scene, node, world_from_node(scene)[node]);
+        const assets::Mesh mesh = baked_mesh(scene, node, world_from_node(scene)[node]);
         Soup soup = join_primitives(mesh, shown);
         weld_simulation(soup, map_skin(scene, scene.nodes[node], soup, shown, notes), size);
         const bool drawn_itself = roles.render.empty() && entry.render.empty();
