@@ -1,5 +1,5 @@
 // Where a test person's girths are taken. Independent of `toile measure`: planes are searched on
-// this person's own surface, with the source rig's joints to say between what.
+// this person's own surface, with marks and joints of the source to say where or between what.
 #include "body/test_person_maker.h"
 #include "core/error.h"
 

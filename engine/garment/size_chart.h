@@ -16,7 +16,7 @@ using SizeChart = std::vector<std::pair<std::string, std::map<std::string, Chart
 /// with its unit ("waist cm"). A cell is a number, two with "-" between, or empty. Without a unit
 /// numbers over 3 are centimetres, others metres. Separated by commas, semicolons or tabs; where
 /// those are not commas, a comma may stand for the decimal point.
-/// \throw FileError naming line and column
+/// \throw Error naming file, line and column
 [[nodiscard]] SizeChart read_size_chart(const std::filesystem::path& file);
 
 } // namespace toile::garment
