@@ -5,6 +5,7 @@
 #include "body/rotations.h"
 #include "body/track_file.h"
 #include "body/usual_poses.h"
+#include "core/error.h"
 #include "core/random.h"
 
 #include <cstdio>
@@ -119,11 +120,25 @@ Joint child_of(Joint joint) {
 } // namespace
 
 Visibility::Visibility(const body::TestPerson& person)
-    : person_(person), joint_(joints_of_vertices(person)) {
-    for (const auto& t : person.rest.triangles) {
-        const auto& p = person.rest.positions;
-        const float third = (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).norm() / 6.0f;
-        area_.resize(p.size(), 0.0f);
+    : triangles_(person.rest.triangles), joint_(joints_of_vertices(person)) {
+    weigh(person.rest.positions);
+}
+
+Visibility::Visibility(const body::FitLevel& level) : triangles_(level.triangles) {
+    for (std::size_t v = 0; v < level.mean.size(); ++v) {
+        std::array<float, kJointCount> weight{};
+        for (std::size_t k = 0; k < 4; ++k)
+            weight[level.skin.joints[v][k]] += level.skin.weights[v][k];
+        joint_.push_back(static_cast<std::size_t>(std::max_element(weight.begin(), weight.end()) -
+                                                  weight.begin()));
+    }
+    weigh(level.mean);
+}
+
+void Visibility::weigh(const std::vector<Vec3f>& rest) {
+    area_.assign(rest.size(), 0.0f);
+    for (const Triangle& t : triangles_) {
+        const float third = (rest[t[1]] - rest[t[0]]).cross(rest[t[2]] - rest[t[0]]).norm() / 6.0f;
         for (const auto v : t)
             area_[v] += third;
     }
@@ -137,7 +152,7 @@ std::array<float, kJointCount> Visibility::shares(const std::vector<Vec3f>& posi
     const Eigen::Isometry3d from_world = camera.settings().world_from_camera.inverse();
     const auto& depth = camera.depth();
     std::vector<Vec3f> normals(positions.size());
-    toile::geometry::vertex_normals(positions, person_.rest.triangles, normals);
+    toile::geometry::vertex_normals(positions, triangles_, normals);
     const Vec3f eye = camera.settings().world_from_camera.translation().cast<float>();
     for (std::size_t v = 0; v < positions.size(); ++v) {
         if (normals[v].dot(eye - positions[v]) <= 0.0f) continue;
@@ -237,7 +252,11 @@ FrameErrors compare(const sensor::Simulator& simulator, std::size_t figure,
     using body_tracker::Following;
     FrameErrors out;
     const auto& shown = *simulator.figures()[figure];
-    const auto shares = visibility.shares(shown.surfaces()[0].positions, simulator.camera(0));
+    const auto body = std::find_if(
+        shown.surfaces().begin(), shown.surfaces().end(),
+        [](const sensor::FigureSurface& s) { return s.role == body::SurfaceRole::body; });
+    if (body == shown.surfaces().end()) throw Error("a person without a body");
+    const auto shares = visibility.shares(body->positions, simulator.camera(0));
     const auto& truth = *shown.joints();
     std::size_t visible = 0;
     for (const float s : shares)

@@ -1,6 +1,7 @@
 // How far tracked people are from the truth of a simulated sensor, and the motions it is asked on.
 #pragma once
 
+#include "body/fit_model.h"
 #include "body/test_person.h"
 #include "body_tracker/body_tracking.h"
 #include "simulated_sensor/simulator.h"
@@ -13,16 +14,21 @@ namespace toile::evaluation {
 inline constexpr double kTrackRate = 30.0;
 inline constexpr float kVisibleShare = 0.2f;
 
-/// Share of each joint's part that a camera sees.
+/// Share of each joint's part that a camera sees; beneath clothes: of which it sees the cloth,
+/// within 6 cm.
 class Visibility {
   public:
     explicit Visibility(const body::TestPerson& person);
+    /// A body of the model: parts are what each joint leads.
+    explicit Visibility(const body::FitLevel& level);
     /// `positions` (nv) world, as the camera has just seen them.
     [[nodiscard]] std::array<float, body::kJointCount>
     shares(const std::vector<Vec3f>& positions, const simulated_sensor::DepthCamera& camera) const;
 
   private:
-    const body::TestPerson& person_;
+    void weigh(const std::vector<Vec3f>& rest);
+
+    std::vector<Triangle> triangles_;
     std::vector<std::size_t> joint_; // of each vertex
     std::vector<float> area_;
     std::array<float, body::kJointCount> total_{};

@@ -1,7 +1,13 @@
 // Follows test people seen by one simulated camera and compares the joints with the true ones.
 //
 //     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --motions DIR [--count N] [--seconds S]
-//         [--noise usual|full] [--json FILE] [--pictures DIR]
+//         [--noise usual|full] [--clutter] [--pictures DIR]
+//     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --write-motions DIR
+//     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --dressed CASES_FOLDER
+//
+// `--write-motions` leaves the motions of its own for each person, to dress people in them
+// (scripts/track-accuracy); `--dressed` follows what that made: surface caches
+// CASES/PERSON--MOTION.
 #include "body/joint_limits.h"
 #include "body/motion.h"
 #include "body/rotations.h"
@@ -36,11 +42,11 @@ using toile::Vec3f;
 using namespace toile::evaluation;
 
 struct Settings {
-    fs::path model, people, motions, json, pictures, forest;
+    fs::path model, people, motions, pictures, forest, dressed, write_motions;
     std::size_t count = 1000, first = 0;
     double seconds = 8.0;
     std::string noise = "usual", only;
-    bool learn_shape = true, smooth = true;
+    bool learn_shape = true, smooth = true, clutter = false;
     std::uint64_t seed = 5;
     int picture_every = 15;
 };
@@ -89,10 +95,73 @@ void save_picture(const tracker::BodyTracking& tracking, const fs::path& file) {
 
 struct Case {
     std::string name;
-    fs::path motion;
+    fs::path motion;          ///< a surface cache of somebody dressed, or a motion
     double turntable_s = 0.0; ///< seconds a turn on the spot
     double turn = 0.0;        ///< radians, of the whole motion
 };
+
+/// What moves in a case, and how its joints are seen.
+struct Subject {
+    sensor::BodyKind kind = sensor::BodyKind::test_person;
+    fs::path source;
+    double seconds = 0.0;
+    Vec3f middle = Vec3f::Zero(); ///< of the hips' way
+    Visibility visibility;
+};
+
+/// Boxes of a table, a chair and a shelf, as triangles of one mesh: middle of the foot at 0.
+toile::geometry::TriangleMesh boxes(std::span<const std::array<float, 6>> all) {
+    toile::geometry::TriangleMesh out;
+    for (const auto& [x0, y0, z0, x1, y1, z1] : all) {
+        const auto at = static_cast<std::uint32_t>(out.positions.size());
+        for (std::uint32_t corner = 0; corner < 8; ++corner)
+            out.positions.emplace_back((corner & 1U) != 0 ? x1 : x0, (corner & 2U) != 0 ? y1 : y0,
+                                       (corner & 4U) != 0 ? z1 : z0);
+        constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
+            {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+        for (const auto& f : kFaces) {
+            out.triangles.push_back({at + f[0], at + f[1], at + f[2]});
+            out.triangles.push_back({at + f[0], at + f[2], at + f[3]});
+        }
+    }
+    return out;
+}
+
+/// A table behind the person, a chair beside, a shelf of a person's size, and a low stool before
+/// one leg.
+void add_clutter(sensor::SceneSettings& scene, toile::Random& random) {
+    using Box = std::array<float, 6>;
+    const std::vector<std::pair<const char*, std::vector<Box>>> things{
+        {"table",
+         {Box{-0.6f, 0.71f, -0.4f, 0.6f, 0.75f, 0.4f},
+          Box{-0.55f, 0.0f, -0.35f, -0.5f, 0.71f, -0.3f},
+          Box{0.5f, 0.0f, -0.35f, 0.55f, 0.71f, -0.3f},
+          Box{-0.55f, 0.0f, 0.3f, -0.5f, 0.71f, 0.35f},
+          Box{0.5f, 0.0f, 0.3f, 0.55f, 0.71f, 0.35f}}},
+        {"chair",
+         {Box{-0.2f, 0.42f, -0.2f, 0.2f, 0.46f, 0.2f}, Box{-0.2f, 0.46f, -0.2f, 0.2f, 0.9f, -0.17f},
+          Box{-0.2f, 0.0f, -0.2f, -0.16f, 0.42f, -0.16f},
+          Box{0.16f, 0.0f, -0.2f, 0.2f, 0.42f, -0.16f},
+          Box{-0.2f, 0.0f, 0.16f, -0.16f, 0.42f, 0.2f},
+          Box{0.16f, 0.0f, 0.16f, 0.2f, 0.42f, 0.2f}}},
+        {"shelf", {Box{-0.25f, 0.0f, -0.15f, 0.25f, 1.7f, 0.15f}}},
+        {"stool", {Box{-0.18f, 0.0f, -0.18f, 0.18f, 0.4f, 0.18f}}}};
+    const std::array<Vec3f, 4> places{Vec3f(-0.7f, 0.0f, -1.6f), Vec3f(1.15f, 0.0f, -0.2f),
+                                      Vec3f(-1.35f, 0.0f, -0.3f), Vec3f(0.25f, 0.0f, 0.75f)};
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        const fs::path file = fs::temp_directory_path() / ("toile_" + std::to_string(getpid()) +
+                                                           "_" + things[i].first + ".glb");
+        toile::assets::Scene mesh;
+        add_mesh(mesh, boxes(things[i].second), Vec3f::Constant(0.3f));
+        toile::assets::save_scene(mesh, file);
+        sensor::ObjectSettings object;
+        object.mesh = file;
+        const auto somewhere = [&] { return static_cast<float>(random.uniform(-0.1, 0.1)); };
+        object.position = places[i] + Vec3f(somewhere(), 0.0f, somewhere());
+        object.turn = random.uniform(-0.5, 0.5);
+        scene.objects.push_back(object);
+    }
+}
 
 class Evaluation {
   public:
@@ -101,28 +170,26 @@ class Evaluation {
             forest_ = std::make_shared<tracker::Forest>(tracker::load_forest(settings.forest));
     }
 
+    /// \param folder of the test person, who wears clothes when the case is of dressed people
     TrackSums run(const fs::path& folder, const body::TestPerson& person, const Case& one,
                   std::uint64_t seed) {
         toile::Random random(seed);
         sensor::Scenario scenario = toile::evaluation::empty_room();
         scenario.seed = seed;
         scenario.frames_per_second = kTrackRate;
-        const body::Motion motion = body::load_motion(one.motion, person.skeleton);
+        const Subject subject = subject_of(folder, person, one);
         scenario.frames = static_cast<std::uint32_t>(
-            std::max(2.0, std::min(settings_.seconds, motion.duration()) * kTrackRate));
+            std::max(2.0, std::min(settings_.seconds, subject.seconds) * kTrackRate));
         sensor::PersonSettings who;
-        who.kind = sensor::BodyKind::test_person;
-        who.source = folder;
-        who.motion = one.motion;
-        Vec3f middle = Vec3f::Zero();
-        for (std::uint32_t f = 0; f < scenario.frames; ++f)
-            middle += body::sample(motion, f / kTrackRate).hips_position /
-                      static_cast<float>(scenario.frames);
-        who.position = Vec3f(-middle.x(), 0.0f, -middle.z());
+        who.kind = subject.kind;
+        who.source = subject.source;
+        if (who.kind == sensor::BodyKind::test_person) who.motion = one.motion;
+        who.position = Vec3f(-subject.middle.x(), 0.0f, -subject.middle.z());
         who.turn = one.turn + random.uniform(-0.5, 0.5);
         who.turntable_s = one.turntable_s;
         who.position = body::about(Vec3f::UnitY(), static_cast<float>(who.turn)) * who.position;
         scenario.people.push_back(who);
+        if (settings_.clutter) add_clutter(scenario.scene, random);
         sensor::CameraSettings camera = sensor::camera_of(sensor::CameraModel::kinect_v1);
         const double distance = random.uniform(2.2, 3.3), height = random.uniform(0.8, 1.8);
         camera.world_from_camera = sensor::look_at(Vec3d(0.0, height, distance),
@@ -137,7 +204,6 @@ class Evaluation {
         options.person.forest = forest_;
         tracker::BodyTracking tracking(model_, simulator.camera(0).intrinsics(),
                                        simulator.camera(0).reported_pose(), options);
-        const Visibility visibility(person);
         TrackSums sums;
         std::size_t swaps = 0;
         for (std::uint32_t f = 0; f < scenario.frames; ++f) {
@@ -147,7 +213,7 @@ class Evaluation {
             tracking.update(simulator.camera(0).depth().metres.data(),
                             static_cast<std::int64_t>(1e9 * scenario.time_of(f)));
             sums.ms.push_back(cpu_ms() - began);
-            (void)compare(simulator, 0, *tracking.people()[0], visibility, sums);
+            (void)compare(simulator, 0, *tracking.people()[0], subject.visibility, sums);
             swaps = swapped(simulator, *tracking.people()[0]) ? swaps + 1 : 0;
             sums.swapped += swaps > 0 ? 1 : 0;
             sums.longest_swap = std::max(sums.longest_swap, swaps);
@@ -161,6 +227,31 @@ class Evaluation {
     }
 
   private:
+    [[nodiscard]] Subject subject_of(const fs::path& folder, const body::TestPerson& person,
+                                     const Case& one) const {
+        if (!settings_.dressed.empty()) {
+            const body::SurfaceCache cache = body::open_surface_cache(one.motion);
+            Subject out{sensor::BodyKind::surfaces, one.motion,
+                        cache.frames.back().time_s - cache.frames.front().time_s, Vec3f::Zero(),
+                        Visibility(model_.level(0))};
+            // Who stands turns for as long as asked.
+            if (one.turntable_s > 0.0) out.seconds = 1e9;
+            for (const body::TrackFrame& frame : cache.frames)
+                out.middle += frame.people.front().joints[0].translation /
+                              static_cast<float>(cache.frames.size());
+            return out;
+        }
+        const body::Motion motion = body::load_motion(one.motion, person.skeleton);
+        Subject out{sensor::BodyKind::test_person, folder, motion.duration(), Vec3f::Zero(),
+                    Visibility(person)};
+        const auto frames = static_cast<std::uint32_t>(
+            std::max(2.0, std::min(settings_.seconds, motion.duration()) * kTrackRate));
+        for (std::uint32_t f = 0; f < frames; ++f)
+            out.middle +=
+                body::sample(motion, f / kTrackRate).hips_position / static_cast<float>(frames);
+        return out;
+    }
+
     const Settings& settings_;
     body::FitModel model_;
     std::shared_ptr<const tracker::Forest> forest_;
@@ -180,14 +271,30 @@ void run(const Settings& settings) {
     std::size_t done = 0;
     for (std::size_t n = settings.first; n < people.size() && done < settings.count; ++n, ++done) {
         const body::TestPerson person = body::load_test_person(people[n]);
+        const fs::path walk = random_walk(person, settings.seconds, settings.seed + n);
+        const fs::path standing = stand_still(person);
+        if (!settings.write_motions.empty()) {
+            fs::create_directories(settings.write_motions);
+            for (const auto& [file, name] :
+                 {std::pair(walk, "random"), std::pair(standing, "turn")}) {
+                fs::copy_file(file, settings.write_motions / (person.id + "--" + name + ".jsonl"),
+                              fs::copy_options::overwrite_existing);
+                fs::remove(file);
+            }
+            continue;
+        }
+        const auto file_of = [&](const std::string& name, const fs::path& bare) {
+            return settings.dressed.empty()
+                       ? bare
+                       : settings.dressed / (person.id + "--" + name) / "cache";
+        };
         std::vector<Case> cases;
         for (const fs::path& file : motions)
-            cases.push_back({file.stem().string(), file});
-        const fs::path walk = random_walk(person, settings.seconds, settings.seed + n);
-        cases.push_back({"random", walk});
-        const fs::path standing = stand_still(person);
-        cases.push_back({"turn", standing, 6.0});
-        if (!motions.empty()) cases.push_back({"away", motions.front(), 0.0, std::numbers::pi});
+            cases.push_back({file.stem().string(), file_of(file.stem().string(), file)});
+        cases.push_back({"random", file_of("random", walk)});
+        cases.push_back({"turn", file_of("turn", standing), 6.0});
+        if (!motions.empty())
+            cases.push_back({"away", cases.front().motion, 0.0, std::numbers::pi});
         for (const Case& one : cases) {
             if (!settings.only.empty() && one.name != settings.only) continue;
             TrackSums sums = evaluation.run(people[n], person, one, settings.seed + n);
@@ -197,6 +304,7 @@ void run(const Settings& settings) {
         fs::remove(walk);
         fs::remove(standing);
     }
+    if (all.frames == 0) return;
     print("all", all);
     std::printf("  stated confidence: share of joints within 10 cm (joints)\n");
     for (std::size_t t = 0; t < all.stated.size(); ++t)
@@ -223,7 +331,9 @@ int main(int argc, char** argv) {
     app.add_option("--only", settings.only);
     app.add_option("--seed", settings.seed);
     app.add_option("--forest", settings.forest, "plugins/body_tracker/adult.forest");
-    app.add_option("--json", settings.json);
+    app.add_option("--dressed", settings.dressed);
+    app.add_option("--write-motions", settings.write_motions);
+    app.add_flag("--clutter", settings.clutter, "furniture beside, behind and before the person");
     app.add_option("--pictures", settings.pictures);
     app.add_option("--picture-every", settings.picture_every);
     app.add_flag("!--no-shape", settings.learn_shape);
