@@ -78,11 +78,10 @@ Painted painted(const ColoredMesh& full, const ColoredMesh& surface, int side,
         throw Error("scan --texture: the cameras gave no colours that could be drawn");
     // Gaps that shrink with the texture, and half of each filled from either side.
     const int gap = std::clamp(side / 256, 2, 8);
-    geometry::ProjectedAtlas atlas = geometry::make_projected_atlas(
-        surface.mesh.positions, surface.mesh.triangles, {side, gap});
+    geometry::ProjectedAtlas atlas =
+        geometry::make_projected_atlas(surface.mesh.positions, surface.mesh.triangles, {side, gap});
     Painted out;
-    out.texture = {name,
-                   assets::bake_colors(full, surface.mesh, atlas.layout, side, gap / 2, rows),
+    out.texture = {name, assets::bake_colors(full, surface.mesh, atlas.layout, side, gap / 2, rows),
                    false};
     report["texture"] = {{"side", side},
                          {"charts", atlas.chart_count},
@@ -98,7 +97,8 @@ assets::Scene scene_of(const ColoredMesh& mesh, const std::optional<Painted>& pa
 }
 
 /// Each scene's views, side by side.
-void save_picture(const std::vector<assets::Scene>& scenes, const char* views, const fs::path& file) {
+void save_picture(const std::vector<assets::Scene>& scenes, const char* views,
+                  const fs::path& file) {
     constexpr int kWidth = 400, kHeight = 640;
     const std::unique_ptr<render::Context> context = render::make_offscreen_context();
     render::RendererOptions options;
@@ -218,8 +218,8 @@ void save(pipeline::ScannedSurface scanned, const ScanOutput& output, host::Regi
     scanned.report["triangles"] = surface.mesh.triangles.size();
     std::optional<Painted> paint;
     if (output.texture > 0)
-        paint = painted(full, surface, output.texture, texture_name(output),
-                        rows_of(services), scanned.report);
+        paint = painted(full, surface, output.texture, texture_name(output), rows_of(services),
+                        scanned.report);
     std::vector<assets::Scene> shown;
     if (output.rig) {
         const pipeline::RiggedScan rig = rigged(surface, registry, services, limits);

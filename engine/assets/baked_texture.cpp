@@ -119,24 +119,23 @@ void cut(std::vector<T>& values, const std::vector<std::uint32_t>& welded) {
 std::vector<int> atlas_triangles(const SeamedLayout& layout, int side, int gutter) {
     const auto row = static_cast<std::size_t>(side);
     std::vector<int> out(row * row, kNone);
-    std::vector<float> off(row * row, static_cast<float>(gutter * gutter));
+    constexpr float kInside = 1e-6f; // square of what counts as no distance, texels
+    std::vector<float> off(row * row, static_cast<float>(gutter * gutter) + kInside);
     const std::vector<bool> rim = at_rim(layout);
     for (std::size_t f = 0; f < layout.triangles.size(); ++f) {
         const Corners t = flat(layout, f, side);
         const float reach = rim[f] ? static_cast<float>(gutter) : 0.0f;
         const Vec3f low = t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() - reach;
         const Vec3f high = t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() + reach;
-        const auto clamped = [&](float v) {
-            return std::clamp(static_cast<int>(v), 0, side - 1);
-        };
+        const auto clamped = [&](float v) { return std::clamp(static_cast<int>(v), 0, side - 1); };
         for (int y = clamped(std::ceil(low.y())); y <= clamped(std::floor(high.y())); ++y)
             for (int x = clamped(std::ceil(low.x())); x <= clamped(std::floor(high.x())); ++x) {
                 const Vec3f at(static_cast<float>(x), static_cast<float>(y), 0.0f);
                 const float squared =
                     (geometry::closest_point(at, t[0], t[1], t[2]).point - at).squaredNorm();
-                const std::size_t i = static_cast<std::size_t>(y) * row +
-                                      static_cast<std::size_t>(x);
-                if (squared >= off[i] || (reach == 0.0f && squared > 1e-6f)) continue;
+                const std::size_t i =
+                    static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x);
+                if (squared >= off[i] || (reach == 0.0f && squared > kInside)) continue;
                 off[i] = squared;
                 out[i] = static_cast<int>(f);
             }
@@ -145,8 +144,7 @@ std::vector<int> atlas_triangles(const SeamedLayout& layout, int side, int gutte
 }
 
 imaging::Image bake_colors(const ColoredMesh& fine, const geometry::TriangleMesh& coarse,
-                           const SeamedLayout& layout, int side, int gutter,
-                           const RowLoop& rows) {
+                           const SeamedLayout& layout, int side, int gutter, const RowLoop& rows) {
     if (fine.colors.empty() || fine.colors.size() != fine.mesh.positions.size())
         throw Error("a texture cannot be made: the surface has no colours");
     if (layout.triangles.size() != coarse.triangles.size())

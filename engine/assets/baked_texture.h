@@ -13,11 +13,12 @@ namespace toile::assets {
 /// does not fit
 [[nodiscard]] imaging::Image bake_colors(const ColoredMesh& fine,
                                          const geometry::TriangleMesh& coarse,
-                                         const geometry::SeamedLayout& layout, int side,
-                                         int gutter, const RowLoop& rows = serial_rows);
+                                         const geometry::SeamedLayout& layout, int side, int gutter,
+                                         const RowLoop& rows = serial_rows);
 
 /// Which triangle of an atlas each texel shows, kNone (-1) for none: the one that its centre lies
-/// in, or the nearest within `gutter` texels; the first of several. (side * side), rows from the top
+/// in, or the nearest within `gutter` texels; the first of several. (side * side), rows from the
+/// top
 [[nodiscard]] std::vector<int> atlas_triangles(const geometry::SeamedLayout& layout, int side,
                                                int gutter);
 

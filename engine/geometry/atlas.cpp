@@ -89,8 +89,8 @@ SeamedLayout make_atlas(std::span<const Vec3f> positions, std::span<const Triang
         lay_upright(chart);
         sizes.push_back(chart.size);
     }
-    const Packing packing = pack_boxes(
-        sizes, static_cast<float>(options.gap) / static_cast<float>(options.texels));
+    const Packing packing =
+        pack_boxes(sizes, static_cast<float>(options.gap) / static_cast<float>(options.texels));
 
     SeamedLayout out;
     out.triangles.resize(triangles.size());

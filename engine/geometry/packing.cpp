@@ -37,6 +37,7 @@ float pack(std::span<const Vec2f> sizes, std::span<const std::size_t> order, flo
         std::fill(skyline.begin() + best, skyline.begin() + best + width,
                   lowest + sizes[box].y() + gap);
         top = std::max(top, lowest + sizes[box].y() + gap);
+        if (top > side) break; // too small a square already
     }
     return top;
 }

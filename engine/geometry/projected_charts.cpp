@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kNone = -1;
 constexpr std::size_t kAxes = 6;
-constexpr double kCrumb = 0.02;      // share of the root of the area: a smaller piece joins another
-constexpr double kSmoothed = 0.01;   // share of the root of the area that normals are smoothed over
+constexpr double kCrumb = 0.02;    // share of the root of the area: a smaller piece joins another
+constexpr double kSmoothed = 0.01; // share of the root of the area that normals are smoothed over
 constexpr double kLeastFacing = 0.25; // cosine, that a triangle keeps so much of its area
 
 /// Along `axis`, to the right and up, as one looks at the surface.
@@ -24,21 +24,20 @@ struct Axis {
 };
 
 const std::array<Axis, kAxes>& axes() {
-    static const std::array<Axis, kAxes> all{
-        {{Vec3d::UnitZ(), Vec3d::UnitX(), Vec3d::UnitY()},
-         {-Vec3d::UnitZ(), -Vec3d::UnitX(), Vec3d::UnitY()},
-         {Vec3d::UnitX(), -Vec3d::UnitZ(), Vec3d::UnitY()},
-         {-Vec3d::UnitX(), Vec3d::UnitZ(), Vec3d::UnitY()},
-         {Vec3d::UnitY(), Vec3d::UnitX(), -Vec3d::UnitZ()},
-         {-Vec3d::UnitY(), Vec3d::UnitX(), Vec3d::UnitZ()}}};
+    static const std::array<Axis, kAxes> all{{{Vec3d::UnitZ(), Vec3d::UnitX(), Vec3d::UnitY()},
+                                              {-Vec3d::UnitZ(), -Vec3d::UnitX(), Vec3d::UnitY()},
+                                              {Vec3d::UnitX(), -Vec3d::UnitZ(), Vec3d::UnitY()},
+                                              {-Vec3d::UnitX(), Vec3d::UnitZ(), Vec3d::UnitY()},
+                                              {Vec3d::UnitY(), Vec3d::UnitX(), -Vec3d::UnitZ()},
+                                              {-Vec3d::UnitY(), Vec3d::UnitX(), Vec3d::UnitZ()}}};
     return all;
 }
 
 struct Faces {
-    std::vector<Vec3d> normals;                ///< (nf) unit, zero without area
-    std::vector<double> areas;                 ///< (nf)
+    std::vector<Vec3d> normals;                 ///< (nf) unit, zero without area
+    std::vector<double> areas;                  ///< (nf)
     std::vector<std::array<int, 3>> neighbours; ///< (nf) over side k, k + 1; kNone: a border
-    double area = 0.0, edge = 0.0;             ///< of all; mean
+    double area = 0.0, edge = 0.0;              ///< of all; mean
 };
 
 Faces faces_of(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
@@ -48,8 +47,8 @@ Faces faces_of(std::span<const Vec3f> positions, std::span<const Triangle> trian
     for (std::uint32_t f = 0; f < triangles.size(); ++f) {
         const Triangle& t = triangles[f];
         const Vec3d a = positions[t[0]].cast<double>();
-        const Vec3d cross = (positions[t[1]].cast<double>() - a)
-                                .cross(positions[t[2]].cast<double>() - a);
+        const Vec3d cross =
+            (positions[t[1]].cast<double>() - a).cross(positions[t[2]].cast<double>() - a);
         out.areas.push_back(0.5 * cross.norm());
         out.normals.emplace_back(cross.normalized());
         if (out.areas.back() <= 0.0) out.normals.back().setZero();
@@ -63,8 +62,8 @@ Faces faces_of(std::span<const Vec3f> positions, std::span<const Triangle> trian
     }
     std::sort(sides.begin(), sides.end());
     for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
-        for (end = i; end < sides.size() && sides[end][0] == sides[i][0] &&
-                      sides[end][1] == sides[i][1];)
+        for (end = i;
+             end < sides.size() && sides[end][0] == sides[i][0] && sides[end][1] == sides[i][1];)
             ++end;
         if (end - i != 2) continue;
         out.neighbours[sides[i][2]][sides[i][3]] = static_cast<int>(sides[i + 1][2]);
@@ -197,7 +196,7 @@ int grow(std::span<const Vec3f> positions, std::span<const Triangle> triangles, 
 
 /// Vertices chart by chart, in metres, each chart's lowest corner at the origin.
 struct Unpacked {
-    SeamedLayout layout; ///< texture coordinates in metres, upwards
+    SeamedLayout layout;             ///< texture coordinates in metres, upwards
     std::vector<std::size_t> charts; ///< (nr)
     std::vector<Vec2f> sizes;        ///< (charts)
 };
@@ -242,11 +241,10 @@ ProjectedAtlas make_projected_atlas(std::span<const Vec3f> positions,
     ProjectedAtlas out;
     out.chart_count = grow(positions, triangles, faces, axis, out.charts);
     Unpacked laid = unpacked(positions, triangles, axis, out.charts, out.chart_count);
-    const Packing packing = pack_boxes(
-        laid.sizes, static_cast<float>(options.gap) / static_cast<float>(options.texels));
+    const Packing packing = pack_boxes(laid.sizes, static_cast<float>(options.gap) /
+                                                       static_cast<float>(options.texels));
     for (std::size_t v = 0; v < laid.charts.size(); ++v) {
-        const Vec2f p =
-            (packing.places[laid.charts[v]] + laid.layout.texcoords[v]) / packing.side;
+        const Vec2f p = (packing.places[laid.charts[v]] + laid.layout.texcoords[v]) / packing.side;
         laid.layout.texcoords[v] = Vec2f(p.x(), 1.0f - p.y()); // origin at the top left
     }
     out.layout = std::move(laid.layout);

@@ -44,8 +44,8 @@ TEST(BakedTexture, EveryPlaceHasTheColourOfTheFineSurface) {
     const imaging::Image image = ball.baked();
     const geometry::SeamedLayout& layout = ball.atlas.layout;
     // Corners and sides too: there the seams are.
-    const std::array<Vec3f, 4> places{Vec3f(1, 0, 0), Vec3f(0.5f, 0.5f, 0),
-                                      Vec3f(0.3f, 0.3f, 0.4f), Vec3f(0, 0.9f, 0.1f)};
+    const std::array<Vec3f, 4> places{Vec3f(1, 0, 0), Vec3f(0.5f, 0.5f, 0), Vec3f(0.3f, 0.3f, 0.4f),
+                                      Vec3f(0, 0.9f, 0.1f)};
     std::vector<int> off;
     for (std::size_t f = 0; f < layout.triangles.size(); ++f)
         for (const Vec3f& w : places) {
@@ -105,8 +105,7 @@ TEST(BakedTexture, BothSidesOfSomethingThinKeepTheirColours) {
     for (const auto& [x, y] : {std::pair{0.1f, 0.1f}, {0.3f, 0.1f}, {0.3f, 0.3f}, {0.1f, 0.3f}})
         coarse.positions.emplace_back(x, y, 0.0008f);
     coarse.triangles = {{0, 1, 2}, {0, 2, 3}};
-    const auto atlas =
-        geometry::make_projected_atlas(coarse.positions, coarse.triangles, {64, 2});
+    const auto atlas = geometry::make_projected_atlas(coarse.positions, coarse.triangles, {64, 2});
     const imaging::Image image = bake_colors(fine, coarse, atlas.layout, 64, 1);
     EXPECT_EQ(texture_color(image, Vec2f(0.5f, 0.5f)), (Rgba8{0, 0, 0, 255}));
 }
