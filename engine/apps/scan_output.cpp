@@ -4,6 +4,7 @@
 #include "assets/baked_texture.h"
 #include "assets/files.h"
 #include "core/error.h"
+#include "core/log.h"
 #include "geometry/decimate.h"
 #include "geometry/nearest_surface.h"
 #include "geometry/projected_charts.h"
@@ -12,6 +13,7 @@
 #include "render/views.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -151,6 +153,16 @@ pipeline::RiggedScan rigged(const ColoredMesh& scan, host::Registry& registry,
     return pipeline::rig_scan(scan.mesh, fit.fit({}, job));
 }
 
+/// A surface of which much is made up should not pass for one that was seen.
+void warn_of_guesses(const nlohmann::ordered_json& report) {
+    constexpr double kMuch = 0.25;
+    const double guessed = report.value("guessed_share", 0.0);
+    if (guessed > kMuch)
+        log::warning("scan: nobody saw " + std::to_string(std::lround(100.0 * guessed)) +
+                     " % of the surface, it is made up: see that the camera reads all sides (dark "
+                     "or shiny cloth and sunlight are not read)");
+}
+
 void print(const nlohmann::ordered_json& report) {
     for (const auto& [key, value] : report.items())
         std::cout << "  " << key << " " << value.dump() << "\n";
@@ -247,6 +259,7 @@ void save(pipeline::ScannedSurface scanned, const ScanOutput& output, host::Regi
         else
             save_picture(shown, "three_quarter_left", output.picture);
     }
+    warn_of_guesses(scanned.report);
     print(scanned.report);
 }
 

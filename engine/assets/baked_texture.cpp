@@ -161,7 +161,8 @@ imaging::Image bake_colors(const ColoredMesh& fine, const geometry::TriangleMesh
             if (shown[i] == kNone) continue;
             const auto f = static_cast<std::size_t>(shown[i]);
             const Corners t = flat(layout, f, side);
-            const Vec3f at(static_cast<float>(i % row), static_cast<float>(i / row), 0.0f);
+            const std::size_t x = i % row, y = i / row;
+            const Vec3f at(static_cast<float>(x), static_cast<float>(y), 0.0f);
             const Vec3f w = geometry::closest_point(at, t[0], t[1], t[2]).barycentric;
             Vec3f place = Vec3f::Zero(), normal = Vec3f::Zero();
             for (std::size_t k = 0; k < 3; ++k) {

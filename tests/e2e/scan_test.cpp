@@ -251,6 +251,15 @@ TEST(MovingScanTest, ArmsMovedFreelyComeOutInOnePoseAndEachIterationHelps) {
     EXPECT_LT(off_the_truth(folder / "scan.ply", folder / "free").first, 0.010);
 }
 
+TEST_F(ScanTest, SaysWhenMuchOfTheSurfaceWasSeenByNobody) {
+    const auto half = scan({"--out", path("half.ply"), "--frames", "4"});
+    ASSERT_EQ(half.status, 0) << half.output;
+    EXPECT_THAT(half.output, HasSubstr("% of the surface, it is made up"));
+    const auto whole = scan({"--out", path("whole.ply")});
+    ASSERT_EQ(whole.status, 0) << whole.output;
+    EXPECT_THAT(whole.output, testing::Not(HasSubstr("made up")));
+}
+
 TEST_F(ScanTest, RefusesWhatCannotBeDone) {
     const auto refused = [&](std::vector<std::string> words, int status, const char* text) {
         const auto result = scan(std::move(words));
