@@ -161,6 +161,10 @@ void warn_of_guesses(const nlohmann::ordered_json& report) {
         log::warning("scan: nobody saw " + std::to_string(std::lround(100.0 * guessed)) +
                      " % of the surface, it is made up: see that the camera reads all sides (dark "
                      "or shiny cloth and sunlight are not read)");
+    if (report.contains("body") && report["body"].contains("reason"))
+        log::warning("scan: no body could be fitted to help, so limbs that moved may be thick or "
+                     "double: " +
+                     report["body"]["reason"].get<std::string>());
 }
 
 void print(const nlohmann::ordered_json& report) {

@@ -59,6 +59,7 @@ TEST_F(ScanTest, ATurningWomanComesOutAsSheStoodFirst) {
     EXPECT_TRUE(report.at("loop").at("closed"));
     EXPECT_LT(report.at("loop").at("error_m"), 0.002);
     EXPECT_LE(report.at("triangles"), 40000);
+    EXPECT_THAT(done.output, testing::Not(HasSubstr("made up")));
     const auto scanned = assets::load_colored_mesh(path("woman.ply"));
     ASSERT_EQ(scanned.colors.size(), scanned.mesh.positions.size());
     const auto topology = geometry::check_topology(scanned.mesh.positions, scanned.mesh.triangles);
@@ -89,9 +90,9 @@ TEST_F(ScanTest, ATextureKeepsWhatACoarseSurfaceCannot) {
     ASSERT_EQ(scan({"--out", path("full.ply"), "--threads", "2"}).status, 0);
     const auto full = assets::load_colored_mesh(path("full.ply"));
     const geometry::NearestSurface surface(full.mesh.positions, full.mesh.triangles);
-    for (const char* name : {"paint.glb", "paint.obj"}) {
+    for (const auto& [name, threads] : {std::pair{"paint.glb", "2"}, {"paint.obj", "1"}}) {
         const auto done = scan({"--out", path(name), "--triangles", "3000", "--texture", "1024",
-                                "--threads", "2", "--report", path("paint.json")});
+                                "--threads", threads, "--report", path("paint.json")});
         ASSERT_EQ(done.status, 0) << done.output;
         const auto report = parse_json_file(path("paint.json")).at("texture");
         EXPECT_EQ(report.at("side"), 1024);
@@ -122,14 +123,8 @@ TEST_F(ScanTest, ATextureKeepsWhatACoarseSurfaceCannot) {
         std::sort(off.begin(), off.end());
         EXPECT_LE(off[off.size() * 95 / 100], 6) << name;
     }
+    // Painted by one thread and by two.
     EXPECT_EQ(texture_of("paint.glb").pixels, texture_of("paint.obj").pixels);
-    ASSERT_EQ(scan({"--out", path("again.glb"), "--triangles", "3000", "--texture", "1024",
-                    "--threads", "1"})
-                  .status,
-              0);
-    EXPECT_EQ(read_bytes(path("again.glb"), 1u << 28).size(),
-              read_bytes(path("paint.glb"), 1u << 28).size());
-    EXPECT_EQ(texture_of("again.glb").pixels, texture_of("paint.glb").pixels);
 }
 
 TEST_F(ScanTest, ARiggedScanMovesWithoutTearing) {
@@ -255,9 +250,6 @@ TEST_F(ScanTest, SaysWhenMuchOfTheSurfaceWasSeenByNobody) {
     const auto half = scan({"--out", path("half.ply"), "--frames", "4"});
     ASSERT_EQ(half.status, 0) << half.output;
     EXPECT_THAT(half.output, HasSubstr("% of the surface, it is made up"));
-    const auto whole = scan({"--out", path("whole.ply")});
-    ASSERT_EQ(whole.status, 0) << whole.output;
-    EXPECT_THAT(whole.output, testing::Not(HasSubstr("made up")));
 }
 
 TEST_F(ScanTest, RefusesWhatCannotBeDone) {
