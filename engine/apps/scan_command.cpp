@@ -144,6 +144,7 @@ void add_scan_commands(CLI::App& app, const GlobalOptions& global) {
         "Example: toile scan --source capture:turn --out anna.ply --triangles 50000 "
         "--picture anna.png\n"
         "         toile scan --source openni2: --frames 300 --out anna.glb --rig\n"
+        "         toile scan --source capture:turn --out anna.glb --triangles 5000 --texture\n"
         "         toile scan --source capture:ball --calibrate ball --out rig.json\n"
         "         toile scan --source capture:four --extrinsics rig.json --out anna.ply");
     command->callback([options, &global] { scan(*options, global); });

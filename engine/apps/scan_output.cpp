@@ -1,15 +1,19 @@
 #include "apps/scan_output.h"
 
 #include "apps/contact_sheet.h"
+#include "assets/baked_texture.h"
 #include "assets/files.h"
 #include "core/error.h"
+#include "core/log.h"
 #include "geometry/decimate.h"
 #include "geometry/nearest_surface.h"
+#include "geometry/projected_charts.h"
 #include "pipeline/rigging.h"
 #include "render/import.h"
 #include "render/views.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -48,8 +52,55 @@ ColoredMesh coarser(const ColoredMesh& full, std::size_t triangles,
     return out;
 }
 
-/// Each mesh's views, side by side.
-void save_picture(const std::vector<ColoredMesh>& meshes, const char* views, const fs::path& file) {
+std::string texture_name(const ScanOutput& output) {
+    return output.file.stem().string() + "_texture";
+}
+
+/// A texture and how it lies on the surface.
+struct Painted {
+    geometry::SeamedLayout layout;
+    assets::Texture texture;
+};
+
+RowLoop rows_of(host::Services& services) {
+    using Work = std::function<void(std::uint32_t, std::uint32_t)>;
+    return [&services](std::uint32_t count, std::uint32_t grain, const Work& work) {
+        Work copy = work;
+        const auto run = [](void* user, std::uint32_t begin, std::uint32_t end) {
+            (*static_cast<Work*>(user))(begin, end);
+        };
+        if (!services.parallel_for(count, grain, &copy, run)) throw Error("out of memory");
+    };
+}
+
+/// The colours of `full` as a texture on `surface`, as many texels a side.
+Painted painted(const ColoredMesh& full, const ColoredMesh& surface, int side,
+                const std::string& name, const RowLoop& rows, nlohmann::ordered_json& report) {
+    if (full.colors.empty())
+        throw Error("scan --texture: the cameras gave no colours that could be drawn");
+    // Gaps that shrink with the texture, and half of each filled from either side.
+    const int gap = std::clamp(side / 256, 2, 8);
+    geometry::ProjectedAtlas atlas =
+        geometry::make_projected_atlas(surface.mesh.positions, surface.mesh.triangles, {side, gap});
+    Painted out;
+    out.texture = {name, assets::bake_colors(full, surface.mesh, atlas.layout, side, gap / 2, rows),
+                   false};
+    report["texture"] = {{"side", side},
+                         {"charts", atlas.chart_count},
+                         {"texel_m", atlas.side / static_cast<float>(side)}};
+    out.layout = std::move(atlas.layout);
+    return out;
+}
+
+assets::Scene scene_of(const ColoredMesh& mesh, const std::optional<Painted>& paint) {
+    assets::Scene scene = assets::scene_of(mesh, "scan");
+    if (paint) assets::put_on(scene, paint->layout, paint->texture);
+    return scene;
+}
+
+/// Each scene's views, side by side.
+void save_picture(const std::vector<assets::Scene>& scenes, const char* views,
+                  const fs::path& file) {
     constexpr int kWidth = 400, kHeight = 640;
     const std::unique_ptr<render::Context> context = render::make_offscreen_context();
     render::RendererOptions options;
@@ -58,9 +109,8 @@ void save_picture(const std::vector<ColoredMesh>& meshes, const char* views, con
     options.quality = render::Quality::high;
     render::Renderer renderer(*context, options);
     std::vector<imaging::Image> pictures;
-    for (const ColoredMesh& mesh : meshes) {
-        const auto added = render::add_scene(renderer, assets::scene_of(mesh, "scan"),
-                                             render::mannequin_material());
+    for (const assets::Scene& shown : scenes) {
+        const auto added = render::add_scene(renderer, shown, render::mannequin_material());
         render::Scene scene;
         scene.instances = added.instances;
         const Vec3f middle = 0.5f * (added.bounds.low + added.bounds.high),
@@ -103,6 +153,20 @@ pipeline::RiggedScan rigged(const ColoredMesh& scan, host::Registry& registry,
     return pipeline::rig_scan(scan.mesh, fit.fit({}, job));
 }
 
+/// A surface of which much is made up should not pass for one that was seen.
+void warn_of_guesses(const nlohmann::ordered_json& report) {
+    constexpr double kMuch = 0.25;
+    const double guessed = report.value("guessed_share", 0.0);
+    if (guessed > kMuch)
+        log::warning("scan: nobody saw " + std::to_string(std::lround(100.0 * guessed)) +
+                     " % of the surface, it is made up: see that the camera reads all sides (dark "
+                     "or shiny cloth and sunlight are not read)");
+    if (report.contains("body") && report["body"].contains("reason"))
+        log::warning("scan: no body could be fitted to help, so limbs that moved may be thick or "
+                     "double: " +
+                     report["body"]["reason"].get<std::string>());
+}
+
 void print(const nlohmann::ordered_json& report) {
     for (const auto& [key, value] : report.items())
         std::cout << "  " << key << " " << value.dump() << "\n";
@@ -120,6 +184,14 @@ void add_scan_output(CLI::App& command, ScanOutput& output) {
     command
         .add_option("--triangles", output.triangles, "Makes the surface coarser: at most so many")
         ->check(CLI::Range(std::size_t{200}, std::size_t{4'000'000}));
+    command
+        .add_option("--texture", output.texture,
+                    "Colours as a texture of so many texels a side (2048 without a number), in the "
+                    ".glb or beside the .obj; those of the full surface, whatever --triangles says")
+        ->expected(0, 1)
+        ->default_str("2048")
+        ->check(CLI::Range(256, 8192))
+        ->type_name("SIZE");
     command.add_flag("--rig", output.rig,
                      "Gives the .glb a skeleton and skin weights, through a body fitted to it");
     command
@@ -137,6 +209,13 @@ void check(const ScanOutput& output) {
     if (output.rig && kind != ".glb")
         throw UsageError("scan --rig: only a .glb holds a skeleton; --out '" +
                          output.file.string() + "' is none");
+    if (output.texture != 0 && kind == ".ply")
+        throw UsageError("scan --texture: a .ply holds none; --out '" + output.file.string() +
+                         "' must be a .glb or .obj");
+    if (output.texture != 0 && kind == ".obj" &&
+        output.picture == output.file.parent_path() / (texture_name(output) + ".png"))
+        throw UsageError("scan --picture '" + output.picture.string() +
+                         "': the texture goes there; name another file");
     if (!output.motion.empty() && !output.rig) throw UsageError("scan --motion: needs --rig");
     if (!output.motion.empty() && !fs::exists(output.motion))
         throw UsageError("scan --motion '" + output.motion.string() + "': no such file");
@@ -147,24 +226,31 @@ void check(const ScanOutput& output) {
 
 void save(pipeline::ScannedSurface scanned, const ScanOutput& output, host::Registry& registry,
           host::Services& services, const toile_limits& limits) {
+    const ColoredMesh full = scanned.surface;
     ColoredMesh& surface = scanned.surface;
     if (output.triangles > 0 && output.triangles < surface.mesh.triangles.size())
         surface = coarser(surface, output.triangles, scanned.report);
     scanned.report["vertices"] = surface.mesh.positions.size();
     scanned.report["triangles"] = surface.mesh.triangles.size();
-    std::vector<ColoredMesh> shown;
+    std::optional<Painted> paint;
+    if (output.texture > 0)
+        paint = painted(full, surface, output.texture, texture_name(output), rows_of(services),
+                        scanned.report);
+    std::vector<assets::Scene> shown;
     if (output.rig) {
         const pipeline::RiggedScan rig = rigged(surface, registry, services, limits);
         scanned.report["rig"] = rig.report;
         std::optional<body::Motion> motion;
         if (!output.motion.empty()) {
             motion = body::load_motion(output.motion, rig.skeleton, &rig.volumes);
-            shown = moments(surface, rig, *motion);
+            for (const ColoredMesh& moment : moments(surface, rig, *motion))
+                shown.push_back(scene_of(moment, paint));
         }
-        assets::save_scene(pipeline::rigged_scene(surface, rig, motion ? &*motion : nullptr),
-                           output.file);
+        assets::Scene scene = pipeline::rigged_scene(surface, rig, motion ? &*motion : nullptr);
+        if (paint) assets::put_on(scene, paint->layout, paint->texture);
+        assets::save_scene(scene, output.file);
     } else {
-        assets::save_scene(assets::scene_of(surface, "scan"), output.file);
+        assets::save_scene(scene_of(surface, paint), output.file, {.materials_beside = true});
     }
     if (!output.report.empty()) {
         std::ofstream out(output.report);
@@ -173,10 +259,11 @@ void save(pipeline::ScannedSurface scanned, const ScanOutput& output, host::Regi
     }
     if (!output.picture.empty()) {
         if (shown.empty())
-            save_picture({surface}, "front,left,back", output.picture);
+            save_picture({scene_of(surface, paint)}, "front,left,back", output.picture);
         else
             save_picture(shown, "three_quarter_left", output.picture);
     }
+    warn_of_guesses(scanned.report);
     print(scanned.report);
 }
 

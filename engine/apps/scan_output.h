@@ -12,11 +12,12 @@ namespace toile::apps {
 struct ScanOutput {
     std::filesystem::path file, report, picture;
     std::size_t triangles = 0;    ///< at most so many; 0: all
+    int texture = 0;              ///< texels a side; 0: colours of vertices
     bool rig = false;             ///< skeleton and skin weights through the fitted body
     std::filesystem::path motion; ///< of the rigged scan, in the file and the picture
 };
 
-/// --out, --report, --picture, --triangles, --rig, --motion.
+/// --out, --report, --picture, --triangles, --texture, --rig, --motion.
 void add_scan_output(CLI::App& command, ScanOutput& output);
 
 /// Before the work: folders that are there, formats that hold what is wanted. \throw UsageError

@@ -18,6 +18,16 @@ std::string lower_extension(const std::filesystem::path& file) {
     return text;
 }
 
+void save_obj(const Scene& scene, const std::filesystem::path& file, bool materials) {
+    const std::string library = materials ? file.stem().string() + ".mtl" : "";
+    write_text(file, write_obj(scene, library));
+    if (!materials) return;
+    write_text(file.parent_path() / library, write_mtl(scene));
+    for (const Texture& texture : scene.textures)
+        write_bytes(file.parent_path() / (texture.name + ".png"),
+                    imaging::encode_png(texture.image));
+}
+
 } // namespace
 
 Scene load_scene(const std::filesystem::path& file, const ImportLimits& limits) {
@@ -56,7 +66,7 @@ void save_scene(const Scene& scene, const std::filesystem::path& file, const Sav
                 write_bytes(file.parent_path() / (texture.name + ".png"),
                             imaging::encode_png(texture.image));
     } else if (extension == ".obj")
-        write_text(file, write_obj(scene));
+        save_obj(scene, file, options.materials_beside && !scene.textures.empty());
     else if (extension == ".ply")
         write_bytes(file, write_ply(scene));
     else

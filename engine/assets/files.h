@@ -31,9 +31,13 @@ struct SaveOptions {
     bool compact = false;
     /// Textures as PNG files beside the .glb, named as the textures, instead of in it.
     bool textures_beside = false;
+    /// Of an .obj with textures: an .mtl and the pictures beside it, the former named as itself,
+    /// these as the textures. Without, geometry and texture coordinates only.
+    bool materials_beside = false;
 };
 
-/// Writes .glb, .obj or .ply. A .glb holds everything; .obj and .ply geometry only.
+/// Writes .glb, .obj or .ply. A .glb holds everything; .obj and .ply geometry only, an
+/// .obj its materials too if asked.
 /// \throw Error
 void save_scene(const Scene& scene, const std::filesystem::path& file,
                 const SaveOptions& options = {});

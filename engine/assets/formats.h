@@ -23,8 +23,11 @@ namespace toile::assets {
 /// A whole .glb. \throw Error when the scene contradicts itself
 [[nodiscard]] std::vector<std::uint8_t> write_glb(const Scene& scene,
                                                   const SaveOptions& options = {});
-/// Geometry only, all meshes where their nodes stand, text. \throw Error
-[[nodiscard]] std::string write_obj(const Scene& scene);
+/// All meshes where their nodes stand, text; with `library` (a file's name) the names of their
+/// materials too. \throw Error
+[[nodiscard]] std::string write_obj(const Scene& scene, const std::string& library = "");
+/// The materials of such an .obj: colour and `<texture>.png`. \throw Error
+[[nodiscard]] std::string write_mtl(const Scene& scene);
 [[nodiscard]] std::vector<std::uint8_t> write_ply(const Scene& scene);
 
 } // namespace toile::assets

@@ -58,16 +58,41 @@ void append_bytes(std::vector<std::uint8_t>& bytes, const T& value) {
     std::memcpy(bytes.data() + at, &value, sizeof(T));
 }
 
+std::string material_name(const Scene& scene, int material) {
+    const std::string& name = scene.materials.at(static_cast<std::size_t>(material)).name;
+    return name.empty() ? "material" + std::to_string(material) : name;
+}
+
 } // namespace
 
-std::string write_obj(const Scene& scene) {
+std::string write_mtl(const Scene& scene) {
+    std::string text = "# Toile\n";
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& m = scene.materials[i];
+        text += "newmtl " + material_name(scene, static_cast<int>(i)) + "\nKd";
+        for (int k = 0; k < 3; ++k)
+            append(text, m.base_color[k]);
+        text += '\n';
+        if (m.base_color_texture == kNone) continue;
+        const auto& name = scene.textures.at(static_cast<std::size_t>(m.base_color_texture)).name;
+        if (name.empty() || name.find('/') != std::string::npos)
+            throw Error("a scene cannot be written: a texture's name is no name of a file");
+        text += "map_Kd " + name + ".png\n";
+    }
+    return text;
+}
+
+std::string write_obj(const Scene& scene, const std::string& library) {
     std::string text = "# Toile; metres\n";
+    if (!library.empty()) text += "mtllib " + library + "\n";
     std::size_t base = 1;
     std::size_t uv_base = 1;
     std::size_t normal_base = 1;
     for (const Placed& placed : place(scene)) {
         const Primitive& p = *placed.primitive;
         text += "o " + (placed.name.empty() ? std::string("mesh") : placed.name) + "\n";
+        if (!library.empty() && p.material != kNone)
+            text += "usemtl " + material_name(scene, p.material) + "\n";
         for (const Vec3f& v : placed.positions) {
             text += 'v';
             for (int k = 0; k < 3; ++k)

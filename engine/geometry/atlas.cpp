@@ -1,6 +1,7 @@
 #include "geometry/atlas.h"
 
 #include "core/error.h"
+#include "geometry/packing.h"
 #include "geometry/parameterization.h"
 
 #include <algorithm>
@@ -21,7 +22,6 @@ struct Chart {
     std::vector<std::size_t> faces;      ///< of the mesh
     std::vector<Vec2f> flat;             ///< metres, lowest corner of its box at the origin
     Vec2f size = Vec2f::Zero();
-    Vec2f place = Vec2f::Zero(); ///< metres in the packed square
 };
 
 std::map<int, Chart> cut(std::span<const Triangle> triangles, std::span<const int> labels) {
@@ -71,40 +71,12 @@ void lay_upright(Chart& chart) {
     chart.flat = std::move(best);
 }
 
-/// Bottom-left on a skyline; the height reached, or nothing when a chart is wider than `side`.
-float pack(std::vector<Chart*>& charts, float side, float gap) {
-    constexpr int kColumns = 512;
-    std::vector<float> skyline(kColumns, gap);
-    float top = 0.0f;
-    const float column = side / static_cast<float>(kColumns);
-    for (Chart* chart : charts) {
-        const int width = static_cast<int>(std::ceil((chart->size.x() + gap) / column));
-        if (width > kColumns) return std::numeric_limits<float>::max();
-        int best = 0;
-        float lowest = std::numeric_limits<float>::max();
-        for (int x = static_cast<int>(std::ceil(gap / column)); x + width <= kColumns; ++x) {
-            const float y = *std::max_element(skyline.begin() + x, skyline.begin() + x + width);
-            if (y < lowest) {
-                lowest = y;
-                best = x;
-            }
-        }
-        if (lowest == std::numeric_limits<float>::max()) return lowest;
-        chart->place = Vec2f(static_cast<float>(best) * column, lowest);
-        std::fill(skyline.begin() + best, skyline.begin() + best + width,
-                  lowest + chart->size.y() + gap);
-        top = std::max(top, lowest + chart->size.y() + gap);
-    }
-    return top;
-}
-
 } // namespace
 
 SeamedLayout make_atlas(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
                         std::span<const int> charts, const AtlasOptions& options) {
     auto pieces = cut(triangles, charts);
-    std::vector<Chart*> order;
-    float area = 0.0f;
+    std::vector<Vec2f> sizes;
     for (auto& [label, chart] : pieces) {
         std::vector<Vec3f> points;
         for (const auto v : chart.vertices)
@@ -115,25 +87,19 @@ SeamedLayout make_atlas(std::span<const Vec3f> positions, std::span<const Triang
             throw Error("chart " + std::to_string(label) + ": " + e.what());
         }
         lay_upright(chart);
-        area += chart.size.prod();
-        order.push_back(&chart);
+        sizes.push_back(chart.size);
     }
-    std::stable_sort(order.begin(), order.end(),
-                     [](const Chart* a, const Chart* b) { return a->size.y() > b->size.y(); });
-    // The least square that holds them, to a hundredth.
-    float side = std::sqrt(area);
-    for (;; side *= 1.01f) {
-        const float gap =
-            side * static_cast<float>(options.gap) / static_cast<float>(options.texels);
-        if (pack(order, side, gap) <= side) break;
-    }
+    const Packing packing =
+        pack_boxes(sizes, static_cast<float>(options.gap) / static_cast<float>(options.texels));
 
     SeamedLayout out;
     out.triangles.resize(triangles.size());
+    std::size_t number = 0;
     for (const auto& [label, chart] : pieces) {
+        const Vec2f& place = packing.places[number++];
         const auto first = static_cast<std::uint32_t>(out.welded.size());
         for (std::size_t i = 0; i < chart.vertices.size(); ++i) {
-            const Vec2f p = (chart.place + chart.flat[i]) / side;
+            const Vec2f p = (place + chart.flat[i]) / packing.side;
             out.welded.push_back(chart.vertices[i]);
             out.texcoords.emplace_back(p.x(), 1.0f - p.y()); // origin at the top left
         }

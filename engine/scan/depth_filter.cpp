@@ -80,7 +80,8 @@ void drop_flying(DepthView& view) {
         }
 }
 
-/// Readings within `pixels` of another depth or of a hole of more than a pixel.
+/// Readings within `pixels` of another depth, of the scene or of what the sensor did not read; not
+/// of a hole in a surface, beyond which it goes on.
 void drop_edges(DepthView& view, int pixels) {
     const Window& c = view.camera;
     std::vector<std::uint8_t> edge(c.count(), 0);
@@ -89,9 +90,17 @@ void drop_edges(DepthView& view, int pixels) {
     };
     const auto jumps = [&](int x, int y, int dx, int dy) {
         const float here = view.depth[c.at(x, y)];
-        if (reads(x + dx, y + dy))
-            return std::abs(view.depth[c.at(x + dx, y + dy)] - here) > depth_jump(here);
-        return !reads(x + 2 * dx, y + 2 * dy);
+        constexpr int kWidestHole = 16; // pixels
+        bool seen_through = false;
+        for (int k = 1; k <= kWidestHole; ++k) {
+            const int u = x + k * dx, v = y + k * dy;
+            if (reads(u, v)) // a single pixel may be anything
+                return k != 2 && std::abs(view.depth[c.at(u, v)] - here) > depth_jump(here);
+            seen_through = seen_through || u < 0 || v < 0 || u >= c.width || v >= c.height ||
+                           view.beyond[c.at(u, v)] == Beyond::scene;
+            if (seen_through && k > 1) return true;
+        }
+        return true;
     };
     for (int y = 0; y < c.height; ++y)
         for (int x = 0; x < c.width; ++x)

@@ -255,9 +255,11 @@ FusedSurface RigidFusion::finish(const std::optional<geometry::Plane>& floor,
                                  const std::function<void(double)>& progress) {
     if (fed_ == 0) throw Error("no frame shows anything to scan");
     if (views_.size() < 2 && report_.lost_frames > 0)
-        throw Error("none of the " + std::to_string(report_.lost_frames) +
-                    " frames after the first fits it: turn or move more slowly, and let what is "
-                    "scanned keep still");
+        throw Error(
+            "none of the " + std::to_string(report_.lost_frames) +
+            " frames after the first fits it: turn or move more slowly, let what is scanned "
+            "keep still, and see that the camera reads most of it (not dark or shiny cloth "
+            "or sunlight)");
     if (views_.size() < 2)
         throw Error("a single view shows one side only: move the camera around what is to be "
                     "scanned, or turn that slowly");

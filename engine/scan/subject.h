@@ -18,8 +18,8 @@ struct Subject {
 
 /// The floor is found as the plane beneath nearly all else and taken away with what is within
 /// 3 cm of it; the rest falls apart where depth jumps, and the largest piece that is 0.2 to 2.5 m
-/// large is the subject, with pieces beside it. `up`: in the camera frame, unit, within half a
-/// radian.
+/// large is the subject, with pieces beside it. A podium of up to 35 cm beneath it goes too, and
+/// its top is the floor then. `up`: in the camera frame, unit, within half a radian.
 [[nodiscard]] Subject find_subject(const Picture& picture, const Vec3f& up);
 
 /// A plane in other coordinates: `motion` leads there.

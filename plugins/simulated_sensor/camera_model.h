@@ -22,6 +22,7 @@ struct NoiseSettings {
     bool quantisation = true; ///< disparity in 1/8 pixel, rounded to nearest
     bool shadow = true;       ///< no reading where the projector does not reach
     bool ragged = true;       ///< readings lost at silhouettes, on grazing surfaces and in hair
+    double holes = 0.0;       ///< share of the readings that is lost in patches of 4 to 20 pixels
     double color = 1.0;       ///< times the usual noise of the colour picture
     /// Systematic errors: smoothing does not take them away.
     bool correlated = false;              ///< axial noise goes together over a few pixels

@@ -38,6 +38,23 @@ float below(float share) {
     return static_cast<float>(x);
 }
 
+/// Is the pixel in a patch without readings? A smooth standard normal field over the picture, from
+/// numbers at every kHoleCell-th pixel, that lies below `bound`.
+bool in_hole(const PixelRandom& random, int x, int y, float bound) {
+    constexpr int kHoleCell = 10;
+    const int cx = x / kHoleCell, cy = y / kHoleCell;
+    const float fx = static_cast<float>(x % kHoleCell) / kHoleCell;
+    const float fy = static_cast<float>(y % kHoleCell) / kHoleCell;
+    float sum = 0.0f, squares = 0.0f;
+    for (int k = 0; k < 4; ++k) {
+        const int dx = k % 2, dy = k / 2;
+        const float weight = (dx == 0 ? 1.0f - fx : fx) * (dy == 0 ? 1.0f - fy : fy);
+        sum += weight * random.normal(Draw::holes, cx + dx, cy + dy);
+        squares += weight * weight;
+    }
+    return sum < bound * std::sqrt(squares);
+}
+
 bool jump(float a, float b) {
     if (a == b) return false; // both may be infinite
     return !(std::abs(a - b) <= kJump * std::min(a, b));
@@ -114,6 +131,7 @@ void DepthCamera::measure(const Stage& stage, std::uint32_t frame, const RowLoop
         std::fill(shadowed_.begin(), shadowed_.end(), std::uint8_t{0});
     shift_silhouettes(stage, random, rows);
     if (noise.axial > 0.0) fill_noise(random, rows);
+    const float hole = noise.holes > 0.0 ? below(static_cast<float>(noise.holes)) : 0.0f;
 
     rows(static_cast<std::uint32_t>(intrinsics_.height), kGrain,
          [&](std::uint32_t begin, std::uint32_t end) {
@@ -124,6 +142,7 @@ void DepthCamera::measure(const Stage& stage, std::uint32_t frame, const RowLoop
                      const Hit& hit = seen_[i];
                      if (!(hit.depth < kNothing) || dark_[i] != 0) continue;
                      if (noise.ragged && lost(stage, random, x, y)) continue;
+                     if (noise.holes > 0.0 && in_hole(random, x, y, hole)) continue;
                      auto z = static_cast<double>(hit.depth);
                      if (noise.axial > 0.0) {
                          // Below 60 degrees the tilt does not count.

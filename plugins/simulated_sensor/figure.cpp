@@ -302,21 +302,46 @@ void Figure::pose(double time_s) {
     const double spin =
         settings_.turntable_s > 0.0 ? 2.0 * std::numbers::pi * time_s / settings_.turntable_s : 0.0;
     pose_at(time_s, turn_about_y(settings_.turn + spin, settings_.position));
+    for (const Carried& thing : carried_)
+        if (joints_)
+            place_all(surfaces_[thing.surface].surface.rest,
+                      (*joints_)[static_cast<std::size_t>(thing.joint)],
+                      surfaces_[thing.surface].positions);
+}
+
+void Figure::take_up(const std::vector<CarriedSettings>& things) {
+    for (const CarriedSettings& thing : things)
+        for (FigureSurface& surface : load_surfaces(thing.mesh)) {
+            for (Vec3f& p : surface.surface.rest)
+                p += thing.position; // in the joint's frame, which is the person's at rest
+            if (!surface.surface.look.texture)
+                surface.surface.look = {thing.color, nullptr, Grain::cloth};
+            surface.role = SurfaceRole::other;
+            carried_.push_back({surfaces_.size(), thing.joint});
+            surfaces_.push_back(std::move(surface));
+        }
 }
 
 std::unique_ptr<Figure> make_figure(const PersonSettings& settings) {
+    std::unique_ptr<Figure> out;
     switch (settings.kind) {
     case BodyKind::avatar:
-        return std::make_unique<AvatarFigure>(settings);
+        out = std::make_unique<AvatarFigure>(settings);
+        break;
     case BodyKind::mesh:
-        return std::make_unique<MeshFigure>(settings);
+        out = std::make_unique<MeshFigure>(settings);
+        break;
     case BodyKind::surfaces:
-        return std::make_unique<CachedFigure>(settings);
+        out = std::make_unique<CachedFigure>(settings);
+        break;
     case BodyKind::test_person:
-        return std::make_unique<TestPersonFigure>(settings);
+        out = std::make_unique<TestPersonFigure>(settings);
+        break;
     default:
         throw Error("a person of the scenario has no body");
     }
+    out->take_up(settings.carried);
+    return out;
 }
 
 std::vector<FigureSurface> load_surfaces(const fs::path& mesh) {

@@ -22,6 +22,8 @@ class Figure {
     Figure(const Figure&) = delete;
     Figure& operator=(const Figure&) = delete;
 
+    /// Gives the person what it carries. \throw Error when a file cannot be used
+    void take_up(const std::vector<CarriedSettings>& things);
     /// Moves everything to where it is at a time. \throw Error when a recording cannot be read
     void pose(double time_s);
 
@@ -39,6 +41,13 @@ class Figure {
     PersonSettings settings_;
     std::vector<FigureSurface> surfaces_;
     std::optional<body::JointTransforms> joints_;
+
+  private:
+    struct Carried {
+        std::size_t surface = 0; ///< into surfaces_
+        body::Joint joint = body::Joint::hips;
+    };
+    std::vector<Carried> carried_;
 };
 
 /// \throw Error when its files cannot be used

@@ -20,6 +20,7 @@ enum class Draw : std::uint8_t {
     green,
     blue,
     systematic, ///< errors that stay the same over a recording
+    holes,      ///< patches without readings
 };
 
 /// Value of a standard normal variable at the middle of one of 2^14 equally likely intervals

@@ -88,6 +88,7 @@ NoiseSettings read_noise(JsonObject noise, const NoiseSettings& before, CameraMo
     out.quantisation = switch_or(noise, "quantisation", out.quantisation);
     out.shadow = switch_or(noise, "shadow", out.shadow);
     out.ragged = switch_or(noise, "ragged", out.ragged);
+    out.holes = noise.number_or("holes", 0.0, 0.9, out.holes);
     out.color = noise.number_or("color", 0.0, 10.0, out.color);
     out.correlated = switch_or(noise, "correlated", out.correlated);
     out.depth_scale = noise.number_or("depth_scale", 0.0, 0.1, out.depth_scale);
@@ -171,6 +172,21 @@ void read_body(JsonObject body, const Reader& reader, PersonSettings& out) {
     body.finish();
 }
 
+void read_carried(JsonObject& person, const Reader& reader, PersonSettings& out) {
+    if (!person.has("carries")) return;
+    for (JsonObject& thing : person.objects("carries")) {
+        CarriedSettings& made = out.carried.emplace_back();
+        made.mesh = reader.path(thing, "mesh");
+        const std::string joint = thing.text("joint");
+        const auto found = body::joint_from_name(joint);
+        if (!found) throw thing.error("joint", "'" + joint + "' is no joint, as leftHand is one");
+        made.joint = *found;
+        made.position = point_or(thing, "position", made.position);
+        made.color = color_or(thing, "color", made.color);
+        thing.finish();
+    }
+}
+
 PersonSettings read_person(JsonObject& person, const Reader& reader) {
     PersonSettings out;
     read_body(person.object("body"), reader, out);
@@ -202,6 +218,9 @@ PersonSettings read_person(JsonObject& person, const Reader& reader) {
         if (!moves) throw person.error("hair", "needs an avatar or a test person");
     }
     if (person.has("skin")) out.skin = color_or(person, "skin", Vec3f::Ones());
+    read_carried(person, reader, out);
+    if (!moves && !out.carried.empty())
+        throw person.error("carries", "needs an avatar or a test person");
     person.finish();
     return out;
 }

@@ -2,6 +2,7 @@
 // The file format stands in docs/file_formats.md and docs/schemas/scenario.schema.json.
 #pragma once
 
+#include "body/skeleton.h"
 #include "simulated_sensor/camera_model.h"
 #include "simulated_sensor/color_camera.h"
 #include "simulated_sensor/hair_cap.h"
@@ -13,6 +14,14 @@
 namespace toile::simulated_sensor {
 
 enum class BodyKind : std::uint8_t { invalid, avatar, mesh, surfaces, test_person };
+
+/// A thing that goes with a joint as if it were grown to it: a bag, a stick, a hat.
+struct CarriedSettings {
+    std::filesystem::path mesh; ///< metres, as it hangs on the person at rest, facing +Z
+    body::Joint joint = body::Joint::hips;
+    Vec3f position = Vec3f::Zero(); ///< of the mesh's origin from the joint, at rest
+    Vec3f color = Vec3f(0.05f, 0.04f, 0.03f);
+};
 
 struct PersonSettings {
     BodyKind kind = BodyKind::invalid;
@@ -27,6 +36,7 @@ struct PersonSettings {
     Vec3f position = Vec3f::Zero();           ///< where the person's own x = z = 0 is, metres
     double turn = 0.0;                        ///< about +Y, radians
     std::optional<HairSettings> hair;
+    std::vector<CarriedSettings> carried;
     std::optional<Vec3f> skin; ///< linear; instead of the body's own colours
 };
 

@@ -59,6 +59,7 @@ TEST_F(ScanTest, ATurningWomanComesOutAsSheStoodFirst) {
     EXPECT_TRUE(report.at("loop").at("closed"));
     EXPECT_LT(report.at("loop").at("error_m"), 0.002);
     EXPECT_LE(report.at("triangles"), 40000);
+    EXPECT_THAT(done.output, testing::Not(HasSubstr("made up")));
     const auto scanned = assets::load_colored_mesh(path("woman.ply"));
     ASSERT_EQ(scanned.colors.size(), scanned.mesh.positions.size());
     const auto topology = geometry::check_topology(scanned.mesh.positions, scanned.mesh.triangles);
@@ -82,14 +83,63 @@ TEST_F(ScanTest, AnyNumberOfThreadsGivesTheSameFile) {
     EXPECT_EQ(read_bytes(path("one.ply"), 1u << 28), read_bytes(path("two.ply"), 1u << 28));
 }
 
+TEST_F(ScanTest, ATextureKeepsWhatACoarseSurfaceCannot) {
+    const auto texture_of = [&](const std::string& name) {
+        return assets::load_scene(path(name)).textures.at(0).image;
+    };
+    ASSERT_EQ(scan({"--out", path("full.ply"), "--threads", "2"}).status, 0);
+    const auto full = assets::load_colored_mesh(path("full.ply"));
+    const geometry::NearestSurface surface(full.mesh.positions, full.mesh.triangles);
+    for (const auto& [name, threads] : {std::pair{"paint.glb", "2"}, {"paint.obj", "1"}}) {
+        const auto done = scan({"--out", path(name), "--triangles", "3000", "--texture", "1024",
+                                "--threads", threads, "--report", path("paint.json")});
+        ASSERT_EQ(done.status, 0) << done.output;
+        const auto report = parse_json_file(path("paint.json")).at("texture");
+        EXPECT_EQ(report.at("side"), 1024);
+        EXPECT_LT(report.at("charts"), 300);
+        const auto scene = assets::load_scene(path(name));
+        ASSERT_EQ(scene.textures.size(), 1u) << name;
+        const auto& part = scene.meshes.at(0).primitives.at(0);
+        ASSERT_LE(part.triangles.size(), 3000u);
+        std::vector<int> off;
+        for (const Triangle& t : part.triangles) { // at the middle of each triangle
+            Vec2f uv = Vec2f::Zero();
+            Vec3f p = Vec3f::Zero();
+            for (const std::uint32_t v : t) {
+                uv += part.texcoords[v] / 3.0f;
+                p += part.positions[v] / 3.0f;
+            }
+            const auto near = surface.nearest(p);
+            const auto seen = assets::texture_color(scene.textures[0].image, uv);
+            for (std::size_t c = 0; c < 3; ++c) {
+                float wanted = 0.0f;
+                for (std::size_t k = 0; k < 3; ++k)
+                    wanted +=
+                        near.barycentric[static_cast<Eigen::Index>(k)] *
+                        static_cast<float>(full.colors[full.mesh.triangles[near.triangle][k]][c]);
+                off.push_back(std::abs(static_cast<int>(seen[c]) - static_cast<int>(wanted)));
+            }
+        }
+        std::sort(off.begin(), off.end());
+        EXPECT_LE(off[off.size() * 95 / 100], 6) << name;
+    }
+    // Painted by one thread and by two.
+    EXPECT_EQ(texture_of("paint.glb").pixels, texture_of("paint.obj").pixels);
+}
+
 TEST_F(ScanTest, ARiggedScanMovesWithoutTearing) {
-    const auto done = scan({"--out", path("rig.glb"), "--rig", "--triangles", "30000", "--motion",
-                            std::string(TOILE_SOURCE_DIR) + "/avatars/motions/walk.json"});
+    const auto done =
+        scan({"--out", path("rig.glb"), "--rig", "--triangles", "30000", "--texture", "--motion",
+              std::string(TOILE_SOURCE_DIR) + "/avatars/motions/walk.json"});
     ASSERT_EQ(done.status, 0) << done.output;
     assets::Scene scene = assets::load_scene(path("rig.glb"));
     ASSERT_EQ(scene.skins.size(), 1u);
     EXPECT_EQ(scene.skins[0].joints.size(), body::kJointCount);
     ASSERT_EQ(scene.animations.size(), 1u);
+    ASSERT_EQ(scene.textures.size(), 1u);
+    EXPECT_EQ(scene.textures[0].image.width, 2048);
+    EXPECT_EQ(scene.meshes.at(0).primitives.at(0).texcoords.size(),
+              scene.meshes.at(0).primitives.at(0).weights.size());
     const auto& primitive = scene.meshes.at(0).primitives.at(0);
     // As it stands every vertex is where it is.
     const auto still =
@@ -196,6 +246,12 @@ TEST(MovingScanTest, ArmsMovedFreelyComeOutInOnePoseAndEachIterationHelps) {
     EXPECT_LT(off_the_truth(folder / "scan.ply", folder / "free").first, 0.010);
 }
 
+TEST_F(ScanTest, SaysWhenMuchOfTheSurfaceWasSeenByNobody) {
+    const auto half = scan({"--out", path("half.ply"), "--frames", "4"});
+    ASSERT_EQ(half.status, 0) << half.output;
+    EXPECT_THAT(half.output, HasSubstr("% of the surface, it is made up"));
+}
+
 TEST_F(ScanTest, RefusesWhatCannotBeDone) {
     const auto refused = [&](std::vector<std::string> words, int status, const char* text) {
         const auto result = scan(std::move(words));
@@ -209,6 +265,10 @@ TEST_F(ScanTest, RefusesWhatCannotBeDone) {
     refused({"--out", path("a.ply"), "--set", "magic=1"}, 2, "voxel_m");
     refused({"--out", path("a.ply"), "--set", "voxel_m=7"}, 2, "must lie in");
     refused({"--out", path("a.ply"), "--rig"}, 2, "only a .glb holds a skeleton");
+    refused({"--out", path("a.ply"), "--texture"}, 2, "a .ply holds none");
+    refused({"--out", path("a.glb"), "--texture", "100"}, 2, "256");
+    refused({"--out", path("a.obj"), "--texture", "--picture", path("a_texture.png")}, 2,
+            "the texture goes there");
     refused({"--out", path("a.glb"), "--motion", "x.bvh"}, 2, "needs --rig");
     refused({"--out", path("a.ply"), "--frames", "1"}, 1, "a single view shows one side only");
     EXPECT_FALSE(fs::exists(path("a.ply")));

@@ -140,7 +140,8 @@ TEST(DepthFilter, TheMeanOfSeveralPicturesHasLessNoiseAndForgetsOutliers) {
     EXPECT_TRUE(std::isnan(mean[8]));
 }
 
-TEST(Subject, IsTakenOffFloorAndWall) {
+/// The lump on a floor or on a podium of 10 cm, before a wall, is found and nothing else.
+void expect_lump_found(bool podium) {
     const auto camera = small_depth_camera();
     geometry::TriangleMesh scene = test::lump();
     const std::size_t own = scene.triangles.size();
@@ -150,7 +151,9 @@ TEST(Subject, IsTakenOffFloorAndWall) {
         for (const Triangle& t : box.triangles)
             scene.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     };
-    add(test::box({-3, -0.34f, -3}, {3, -0.24f, 3}));
+    const float floor = podium ? -0.34f : -0.24f;
+    add(test::box({-3, floor - 0.1f, -3}, {3, floor, 3}));
+    if (podium) add(test::box({-0.25f, -0.34f, -0.25f}, {0.25f, -0.24f, 0.25f}));
     add(test::box({-3, -0.3f, -1.1f}, {3, 3, -1}));
     const geometry::NearestSurface surface(scene.positions, scene.triangles);
     Eigen::Isometry3d place = camera_around(0.2, 1.4);
@@ -162,6 +165,8 @@ TEST(Subject, IsTakenOffFloorAndWall) {
     ASSERT_EQ(found.trouble, "");
     ASSERT_TRUE(found.floor);
     EXPECT_GT(found.floor->normal.dot(up), 0.999f);
+    const Vec3f top = place.inverse().cast<float>() * Vec3f(0, -0.24f, 0);
+    EXPECT_NEAR(found.floor->normal.dot(top) - found.floor->offset, 0.0f, 0.01f);
     const Eigen::Isometry3f pose = place.cast<float>();
     std::size_t wrong = 0, missed = 0, count = 0;
     for (int y = 0; y < camera.height; ++y)
@@ -177,6 +182,41 @@ TEST(Subject, IsTakenOffFloorAndWall) {
         }
     EXPECT_EQ(wrong, 0u);
     EXPECT_LT(missed, count / 20); // the lowest 3 cm
+}
+
+TEST(Subject, IsTakenOffFloorAndWall) {
+    expect_lump_found(false);
+}
+
+TEST(Subject, IsTakenOffThePodiumItStandsOn) {
+    expect_lump_found(true);
+}
+
+/// A wall that is read with holes: inside of it no reading is lost, round a hole that the room
+/// behind is seen through they are.
+TEST(DepthFilter, HolesInASurfaceAreNoEdges) {
+    const auto camera = small_depth_camera();
+    std::vector<float> depth(32000, 1.5f);
+    const auto punch = [&](int x0, float value) {
+        for (int y = 80; y < 90; ++y)
+            for (int x = x0; x < x0 + 10; ++x)
+                depth[static_cast<std::size_t>(y * camera.width + x)] = value;
+    };
+    punch(40, std::nanf(""));
+    punch(100, 3.0f);
+    std::vector<std::uint8_t> subject(32000, 1);
+    for (std::size_t i = 0; i < depth.size(); ++i)
+        subject[i] = depth[i] == 3.0f ? 0 : 1;
+    const DepthView view =
+        filtered_view({camera, depth, {}}, subject, {.joint_bilateral = false}, serial_rows);
+    const auto reads = [&](int x, int y) {
+        return view.depth[view.camera.at(x - view.around[0], y - view.around[1])] > 0.0f;
+    };
+    for (int y = 80; y < 90; ++y) {
+        EXPECT_TRUE(reads(39, y) && reads(50, y)) << y;
+        EXPECT_FALSE(reads(99, y) || reads(98, y) || reads(110, y)) << y;
+        EXPECT_TRUE(reads(97, y)) << y;
+    }
 }
 
 TEST(Subject, AnEmptyRoomHasNone) {
