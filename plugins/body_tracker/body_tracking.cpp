@@ -136,30 +136,49 @@ PersonTrack* BodyTracking::remembered_near(const Vec3f& place) noexcept {
     return nullptr;
 }
 
-/// Looks for somebody new, once a frame.
-void BodyTracking::welcome() noexcept {
-    for (const Piece& piece : scene_.people_like()) {
-        PersonTrack* const known = remembered_near(piece.middle);
-        PersonTrack* const person = known != nullptr ? known : free_track();
-        if (person == nullptr) return;
-        if (!mask_piece(piece, *person)) continue;
-        if (person->start(known != nullptr ? known->id() : next_id_, seen_by(*person),
-                          scene_.up())) {
-            if (known == nullptr) ++next_id_;
-            for (std::size_t i = 0; i < owner_.size(); ++i)
-                if (person->mask().cells[i] != 0) owner_[i] = 1;
-        } else {
-            doubt(piece);
-        }
-        return;
-    }
+/// How often a piece was no person.
+std::uint32_t BodyTracking::doubts_of(const Piece& piece) const noexcept {
+    for (const Doubt& doubt : doubts_)
+        if (doubt.times > 0 && (piece.middle - doubt.place).norm() < kSamePiece) return doubt.times;
+    return 0;
 }
 
-/// What was no person several times in a row is scene.
+/// Looks for somebody new, once a frame: first where nobody was looked for in vain.
+void BodyTracking::welcome() noexcept {
+    for (std::uint32_t doubts = 0; doubts <= kDoubts; ++doubts)
+        for (const Piece& piece : scene_.people_like())
+            if (std::min(doubts_of(piece), kDoubts) == doubts && look_at(piece)) return;
+}
+
+/// False when there was nothing to look at, or nobody to look with.
+bool BodyTracking::look_at(const Piece& piece) noexcept {
+    PersonTrack* const known = remembered_near(piece.middle);
+    PersonTrack* const person = known != nullptr ? known : free_track();
+    if (person == nullptr) return false;
+    if (!mask_piece(piece, *person)) return false;
+    if (person->start(known != nullptr ? known->id() : next_id_, seen_by(*person), scene_.up())) {
+        if (known == nullptr) ++next_id_;
+        for (std::size_t i = 0; i < owner_.size(); ++i)
+            if (person->mask().cells[i] != 0) owner_[i] = 1;
+    } else {
+        doubt(piece);
+    }
+    return true;
+}
+
+/// What was no person several times is scene.
 void BodyTracking::doubt(const Piece& piece) noexcept {
-    doubts_ = (piece.middle - doubted_).norm() < kSamePiece ? doubts_ + 1 : 1;
-    doubted_ = piece.middle;
-    if (doubts_ >= kDoubts) scene_.dismiss(grid_, piece.label);
+    Doubt* mine = nullptr;
+    for (Doubt& doubt : doubts_)
+        if (doubt.times > 0 && (piece.middle - doubt.place).norm() < kSamePiece) mine = &doubt;
+    if (mine == nullptr)
+        mine = &*std::min_element(doubts_.begin(), doubts_.end(),
+                                  [](const Doubt& a, const Doubt& b) { return a.times < b.times; });
+    mine->times = (piece.middle - mine->place).norm() < kSamePiece ? mine->times + 1 : 1;
+    mine->place = piece.middle;
+    if (mine->times < kDoubts) return;
+    scene_.dismiss(grid_, piece.label);
+    mine->times = 0;
 }
 
 void BodyTracking::update(const float* metres, std::int64_t timestamp_ns) noexcept {

@@ -4,6 +4,7 @@
 #include "body_tracker/person_track.h"
 #include "body_tracker/scene_watch.h"
 
+#include <array>
 #include <memory>
 
 namespace toile::body_tracker {
@@ -37,10 +38,17 @@ class BodyTracking {
     [[nodiscard]] const DepthGrid& grid() const noexcept { return grid_; }
 
   private:
+    /// Where a piece was no person, and how often.
+    struct Doubt {
+        Vec3f place = Vec3f::Zero();
+        std::uint32_t times = 0;
+    };
     [[nodiscard]] float step_to(std::int64_t timestamp_ns) noexcept;
     void share_out() noexcept;
     void follow_all(float dt) noexcept;
     void welcome() noexcept;
+    [[nodiscard]] bool look_at(const Piece& piece) noexcept;
+    [[nodiscard]] std::uint32_t doubts_of(const Piece& piece) const noexcept;
     void doubt(const Piece& piece) noexcept;
     void forget(std::uint32_t id, PersonTrack& person) noexcept;
     [[nodiscard]] SeenPerson seen_by(PersonTrack& person) const noexcept;
@@ -56,8 +64,7 @@ class BodyTracking {
     std::vector<std::uint8_t> owner_; ///< (cells) 1 + person, 0: nobody's
     std::vector<std::uint32_t> stack_;
     std::uint32_t next_id_ = 1;
-    Vec3f doubted_ = Vec3f::Zero(); ///< where a piece was no person
-    std::uint32_t doubts_ = 0;      ///< times in a row
+    std::array<Doubt, 8> doubts_{};
     std::int64_t last_ns_ = 0;
     bool started_ = false;
 };

@@ -16,6 +16,9 @@ constexpr float kKeepsMoving = 0.8f;       // share of the last motion that goes
 constexpr int kSearchAfter = 2;            // failures in a row
 constexpr float kNobody = 0.45f;           // not explained: what was found is no person
 constexpr float kSurelyNobody = 0.6f;
+// A shelf leaves 0.23 to 0.39 and has a support of 0.09 to 0.18; people 0.15 at most, or more of
+// both.
+constexpr float kFurniture = 0.2f, kFurnitureSupport = 0.25f;
 constexpr float kAstraySeconds = 1.0f; // nobody is followed where nobody is
 constexpr float kLearnBelow = 0.3f;    // not explained: a wrong shape alone may do that
 constexpr int kFirstSteps = 2;
@@ -175,7 +178,9 @@ void PersonTrack::recover(const SeenPerson& seen, const Vec3f& up) noexcept {
     }
     agreement_ = registration_.judge(seen, pose_);
     if (!found || sure_) return;
-    if (agreement_.unexplained > kNobody)
+    const bool furniture = parts_.useful() && agreement_.unexplained > kFurniture &&
+                           parts_.support(registration_.drawing()) < kFurnitureSupport;
+    if (furniture || agreement_.unexplained > kNobody)
         stop();
     else
         sure_ = true;

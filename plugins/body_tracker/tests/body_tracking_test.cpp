@@ -86,6 +86,25 @@ TEST(BodyTracking, NobodyInAnEmptyRoomOrBehindAPlainBox) {
     }
 }
 
+TEST(BodyTracking, FurnitureOfAPersonsSizeIsNobodyAndDelaysNobody) {
+    DrawnRoom room;
+    TrackingOptions options;
+    options.person.forest = std::make_shared<Forest>(load_forest(
+        std::filesystem::path(TOILE_SOURCE_DIR) / "plugins" / "body_tracker" / "adult.forest"));
+    BodyTracking tracking(adult(), room.camera, room.world_from_camera, options);
+    for (int f = 0; f < 12; ++f) {
+        room.clear();
+        room.add(waving(f), 0.3f, 0.2f, 0.2f);
+        room.add_box({-1.4f, 0.0f, -0.2f}, {-0.75f, 1.75f, 0.1f}); // larger in view than the person
+        tracking.update(room.depth.data(), frame_time(f));
+        if (f < 5) continue;
+        const PersonTrack& person = *tracking.people()[0];
+        ASSERT_TRUE(person.active()) << "frame " << f;
+        EXPECT_EQ(person.id(), 1u);
+        EXPECT_LT(mean_error(person, room.people[0]), 0.05f) << "frame " << f;
+    }
+}
+
 TEST(BodyTracking, GoesOnAfterBadFrames) {
     DrawnRoom room;
     BodyTracking tracking = tracking_in(room);

@@ -59,6 +59,21 @@ struct DrawnRoom {
             if (frame.mm[i] != 0) depth[i] = std::min(depth[i], 0.001f * frame.mm[i]);
     }
 
+    /// A box, world.
+    void add_box(const Vec3f& low, const Vec3f& high) {
+        const Vec3f eye = world_from_camera.translation().cast<float>();
+        for (int y = 0; y < 240; ++y)
+            for (int x = 0; x < 320; ++x) {
+                const Vec3f ray((static_cast<float>(x) - 159.5f) / 290.0f,
+                                (119.5f - static_cast<float>(y)) / 290.0f, -1.0f);
+                const Vec3f a = (low - eye).cwiseQuotient(ray);
+                const Vec3f b = (high - eye).cwiseQuotient(ray);
+                const float in = a.cwiseMin(b).maxCoeff(), out = a.cwiseMax(b).minCoeff();
+                float& d = depth[static_cast<std::size_t>(y * 320 + x)];
+                if (in > 0.0f && in < out) d = std::min(d, in);
+            }
+    }
+
   private:
     static const std::vector<PartLabel>& labels() {
         static const std::vector<PartLabel> all = label_vertices(adult().space().model());
