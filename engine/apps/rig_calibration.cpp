@@ -20,17 +20,6 @@ void show(std::size_t count) {
     if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r%zu frames", count);
 }
 
-RowLoop rows_of(host::Services& services) {
-    using Work = std::function<void(std::uint32_t, std::uint32_t)>;
-    return [&services](std::uint32_t count, std::uint32_t grain, const Work& work) {
-        Work copy = work;
-        const auto run = [](void* user, std::uint32_t begin, std::uint32_t end) {
-            (*static_cast<Work*>(user))(begin, end);
-        };
-        if (!services.parallel_for(count, grain, &copy, run)) throw Error("out of memory");
-    };
-}
-
 std::vector<std::string> names_of(const CameraSet& cameras) {
     std::vector<std::string> out;
     for (const auto& stream : cameras.streams())
@@ -177,7 +166,7 @@ places_from_turn(const Seen& seen, const std::vector<std::string>& names, const 
 imaging::RigFile person_rig(CameraSet& cameras, const RigRequest& request, host::Registry& registry,
                             host::Services& services, const toile_limits& limits) {
     const auto& streams = cameras.streams();
-    const RowLoop rows = rows_of(services);
+    const RowLoop rows = host::rows_of(services);
     const std::vector<Instant> instants = all_instants(cameras, request.frames);
     const std::vector<std::string> names = names_of(cameras);
     Seen seen = subjects(streams, instants, rows);

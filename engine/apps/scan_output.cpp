@@ -62,17 +62,6 @@ struct Painted {
     assets::Texture texture;
 };
 
-RowLoop rows_of(host::Services& services) {
-    using Work = std::function<void(std::uint32_t, std::uint32_t)>;
-    return [&services](std::uint32_t count, std::uint32_t grain, const Work& work) {
-        Work copy = work;
-        const auto run = [](void* user, std::uint32_t begin, std::uint32_t end) {
-            (*static_cast<Work*>(user))(begin, end);
-        };
-        if (!services.parallel_for(count, grain, &copy, run)) throw Error("out of memory");
-    };
-}
-
 /// The colours of `full` as a texture on `surface`, as many texels a side.
 Painted painted(const ColoredMesh& full, const ColoredMesh& surface, int side,
                 const std::string& name, const RowLoop& rows, nlohmann::ordered_json& report) {
@@ -234,8 +223,8 @@ void save(pipeline::ScannedSurface scanned, const ScanOutput& output, host::Regi
     scanned.report["triangles"] = surface.mesh.triangles.size();
     std::optional<Painted> paint;
     if (output.texture > 0)
-        paint = painted(full, surface, output.texture, texture_name(output), rows_of(services),
-                        scanned.report);
+        paint = painted(full, surface, output.texture, texture_name(output),
+                        host::rows_of(services), scanned.report);
     std::vector<assets::Scene> shown;
     if (output.rig) {
         const pipeline::RiggedScan rig = rigged(surface, registry, services, limits);

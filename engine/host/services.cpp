@@ -1,5 +1,6 @@
 #include "host/services.h"
 
+#include "core/error.h"
 #include "core/log.h"
 
 #include <algorithm>
@@ -55,6 +56,17 @@ bool Services::parallel_for(std::uint32_t count, std::uint32_t grain, void* user
         arena_->arena.execute([&] { tbb::parallel_for(0u, ranges, run); });
     }
     return !threw;
+}
+
+RowLoop rows_of(Services& services) {
+    using Work = std::function<void(std::uint32_t, std::uint32_t)>;
+    return [&services](std::uint32_t count, std::uint32_t grain, const Work& work) {
+        Work copy = work;
+        const auto run = [](void* user, std::uint32_t begin, std::uint32_t end) {
+            (*static_cast<Work*>(user))(begin, end);
+        };
+        if (!services.parallel_for(count, grain, &copy, run)) throw Error("out of memory");
+    };
 }
 
 struct InstanceHost::State {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "abi/host.h"
+#include "core/row_loop.h"
 
 #include <cstdint>
 #include <memory>
@@ -29,6 +30,10 @@ class Services {
     struct Arena;
     std::unique_ptr<Arena> arena_;
 };
+
+/// `parallel_for` as a loop over ranges; `services` must outlive it. The loop throws Error when a
+/// range failed.
+[[nodiscard]] RowLoop rows_of(Services& services);
 
 /// The toile_host of one instance: copies what the plugin reports. Outlives the instance.
 class InstanceHost {

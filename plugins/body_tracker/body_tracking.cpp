@@ -97,9 +97,13 @@ void BodyTracking::follow_all(float dt) noexcept {
     for (const auto& person : people_) {
         if (!person->active()) continue;
         const std::uint32_t id = person->id();
+        const bool known = person->sure();
         person->follow(seen_by(*person), scene_.up(), dt);
         if (!person->active() && !person->sure()) forget(id, *person);
         if (person->unseen_s() > options_.forget_s) person->stop();
+        if (known || !person->active() || !person->sure()) continue;
+        // Somebody is there after all: what was doubted there before counts no more.
+        if (Doubt* const old = doubt_near(person->pose().hips_position)) old->times = 0;
     }
 }
 
@@ -136,18 +140,20 @@ PersonTrack* BodyTracking::remembered_near(const Vec3f& place) noexcept {
     return nullptr;
 }
 
-/// How often a piece was no person.
-std::uint32_t BodyTracking::doubts_of(const Piece& piece) const noexcept {
-    for (const Doubt& doubt : doubts_)
-        if (doubt.times > 0 && (piece.middle - doubt.place).norm() < kSamePiece) return doubt.times;
-    return 0;
+/// What is known of nobody there; null: nothing.
+BodyTracking::Doubt* BodyTracking::doubt_near(const Vec3f& place) noexcept {
+    for (Doubt& doubt : doubts_)
+        if (doubt.times > 0 && (place - doubt.place).norm() < kSamePiece) return &doubt;
+    return nullptr;
 }
 
 /// Looks for somebody new, once a frame: first where nobody was looked for in vain.
 void BodyTracking::welcome() noexcept {
-    for (std::uint32_t doubts = 0; doubts <= kDoubts; ++doubts)
-        for (const Piece& piece : scene_.people_like())
-            if (std::min(doubts_of(piece), kDoubts) == doubts && look_at(piece)) return;
+    for (std::uint32_t doubts = 0; doubts < kDoubts; ++doubts)
+        for (const Piece& piece : scene_.people_like()) {
+            const Doubt* const known = doubt_near(piece.middle);
+            if ((known != nullptr ? known->times : 0) == doubts && look_at(piece)) return;
+        }
 }
 
 /// False when there was nothing to look at, or nobody to look with.
@@ -168,13 +174,13 @@ bool BodyTracking::look_at(const Piece& piece) noexcept {
 
 /// What was no person several times is scene.
 void BodyTracking::doubt(const Piece& piece) noexcept {
-    Doubt* mine = nullptr;
-    for (Doubt& doubt : doubts_)
-        if (doubt.times > 0 && (piece.middle - doubt.place).norm() < kSamePiece) mine = &doubt;
-    if (mine == nullptr)
+    Doubt* mine = doubt_near(piece.middle);
+    if (mine == nullptr) {
         mine = &*std::min_element(doubts_.begin(), doubts_.end(),
                                   [](const Doubt& a, const Doubt& b) { return a.times < b.times; });
-    mine->times = (piece.middle - mine->place).norm() < kSamePiece ? mine->times + 1 : 1;
+        mine->times = 0;
+    }
+    ++mine->times;
     mine->place = piece.middle;
     if (mine->times < kDoubts) return;
     scene_.dismiss(grid_, piece.label);

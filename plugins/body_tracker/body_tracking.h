@@ -48,7 +48,7 @@ class BodyTracking {
     void follow_all(float dt) noexcept;
     void welcome() noexcept;
     [[nodiscard]] bool look_at(const Piece& piece) noexcept;
-    [[nodiscard]] std::uint32_t doubts_of(const Piece& piece) const noexcept;
+    [[nodiscard]] Doubt* doubt_near(const Vec3f& place) noexcept;
     void doubt(const Piece& piece) noexcept;
     void forget(std::uint32_t id, PersonTrack& person) noexcept;
     [[nodiscard]] SeenPerson seen_by(PersonTrack& person) const noexcept;

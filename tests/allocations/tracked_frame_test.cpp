@@ -14,8 +14,7 @@ constexpr int kJump = kKnown + 35; // aside and into another pose: a search foll
 TEST(TrackedFrame, AllocatesNothing) {
     DrawnRoom room;
     TrackingOptions options;
-    options.person.forest = std::make_shared<Forest>(load_forest(
-        std::filesystem::path(TOILE_SOURCE_DIR) / "plugins" / "body_tracker" / "adult.forest"));
+    options.person.forest = shipped_forest();
     BodyTracking tracking(adult(), room.camera, room.world_from_camera, options);
     const auto draw = [&](int frame) {
         room.clear();

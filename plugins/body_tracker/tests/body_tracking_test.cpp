@@ -89,8 +89,7 @@ TEST(BodyTracking, NobodyInAnEmptyRoomOrBehindAPlainBox) {
 TEST(BodyTracking, FurnitureOfAPersonsSizeIsNobodyAndDelaysNobody) {
     DrawnRoom room;
     TrackingOptions options;
-    options.person.forest = std::make_shared<Forest>(load_forest(
-        std::filesystem::path(TOILE_SOURCE_DIR) / "plugins" / "body_tracker" / "adult.forest"));
+    options.person.forest = shipped_forest();
     BodyTracking tracking(adult(), room.camera, room.world_from_camera, options);
     for (int f = 0; f < 12; ++f) {
         room.clear();

@@ -17,6 +17,12 @@ inline const body::FitModel& adult() {
     return model;
 }
 
+inline std::shared_ptr<const Forest> shipped_forest() {
+    static const auto forest = std::make_shared<const Forest>(load_forest(
+        std::filesystem::path(TOILE_SOURCE_DIR) / "plugins" / "body_tracker" / "adult.forest"));
+    return forest;
+}
+
 /// A camera 1.2 m above the floor at z = 3 m that looks level at a wall at z = -1.5 m.
 struct DrawnRoom {
     imaging::Intrinsics camera{320, 240, 290.0, 290.0, 159.5, 119.5, {}};
