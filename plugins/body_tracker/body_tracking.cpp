@@ -10,6 +10,7 @@ constexpr float kUsualStep = 1.0f / 30.0f;
 constexpr float kLongestStep = 1.0f; // seconds
 constexpr float kOwn = 0.12f;        // metres from a person's bones: that person's
 constexpr float kGrow = 0.45f;       // as far may what hangs on such cells reach
+constexpr float kStray = 0.35f;      // and a small piece that hangs on nothing
 constexpr float kSamePerson = 0.9f;  // metres between where somebody went and came back
 constexpr std::uint32_t kDoubts = 3; // searches before a piece counts as scene
 constexpr float kSamePiece = 0.5f;   // metres that one moves between two frames at most
@@ -46,7 +47,25 @@ SeenPerson BodyTracking::seen_by(PersonTrack& person) const noexcept {
     return {grid_, person.mask(), scene_.floor()};
 }
 
-/// Foreground cells near somebody's bones are theirs, and so is what hangs on them.
+/// 1 + whose bones are nearest, within a distance; 0: nobody's.
+std::uint8_t BodyTracking::nearest_person(const Vec3f& point, float within) const noexcept {
+    std::uint8_t nearest = 0;
+    for (std::size_t p = 0; p < people_.size(); ++p) {
+        if (!people_[p]->active()) continue;
+        const float distance = people_[p]->bones()(point);
+        if (distance < within) within = distance, nearest = static_cast<std::uint8_t>(p + 1);
+    }
+    return nearest;
+}
+
+bool BodyTracking::like_a_person(std::uint16_t label) const noexcept {
+    const auto pieces = scene_.people_like();
+    return std::any_of(pieces.begin(), pieces.end(),
+                       [&](const Piece& piece) { return piece.label == label; });
+}
+
+/// Foreground cells near somebody's bones are theirs, and so is what hangs on them, and small
+/// pieces that came: an arm before or behind which there is another hangs on nothing.
 void BodyTracking::share_out() noexcept {
     const GridCamera& camera = grid_.camera;
     std::fill(owner_.begin(), owner_.end(), std::uint8_t{0});
@@ -59,12 +78,7 @@ void BodyTracking::share_out() noexcept {
     };
     for (std::size_t i = 0; i < labels.size(); ++i) {
         if (labels[i] == 0) continue;
-        float best = kOwn;
-        for (std::size_t p = 0; p < people_.size(); ++p) {
-            if (!people_[p]->active()) continue;
-            const float distance = people_[p]->bones()(point(i));
-            if (distance < best) best = distance, owner_[i] = static_cast<std::uint8_t>(p + 1);
-        }
+        owner_[i] = nearest_person(point(i), kOwn);
         if (owner_[i] != 0) stack_.push_back(static_cast<std::uint32_t>(i));
     }
     for (std::size_t at = 0; at < stack_.size(); ++at) {
@@ -84,6 +98,9 @@ void BodyTracking::share_out() noexcept {
             stack_.push_back(static_cast<std::uint32_t>(n));
         }
     }
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        if (labels[i] != 0 && owner_[i] == 0 && scene_.came(i) && !like_a_person(labels[i]))
+            owner_[i] = nearest_person(point(i), kStray);
     for (std::size_t p = 0; p < people_.size(); ++p) {
         if (!people_[p]->active()) continue;
         PersonMask& mask = people_[p]->mask();

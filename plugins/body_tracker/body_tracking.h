@@ -44,6 +44,8 @@ class BodyTracking {
         std::uint32_t times = 0;
     };
     [[nodiscard]] float step_to(std::int64_t timestamp_ns) noexcept;
+    [[nodiscard]] std::uint8_t nearest_person(const Vec3f& point, float within) const noexcept;
+    [[nodiscard]] bool like_a_person(std::uint16_t label) const noexcept;
     void share_out() noexcept;
     void follow_all(float dt) noexcept;
     void welcome() noexcept;

@@ -24,11 +24,14 @@ constexpr float kLearnBelow = 0.3f;    // not explained: a wrong shape alone may
 constexpr int kFirstSteps = 2;
 constexpr int kTryTurnedEvery = 30; // frames
 constexpr int kTurnedSteps = 6;
-constexpr int kTryArmEvery = 24, kTryUneasyArmEvery = 6; // frames
-constexpr float kUneasy = 0.06f;                         // not explained
+constexpr int kTryArmEvery = 24, kTryUneasyArmEvery = 6, kTryLostArmEvery = 2; // frames
+constexpr float kUneasy = 0.06f;                                               // not explained
+constexpr float kArmLost = 0.025f; // more than usual for that person
+constexpr float kUsualSeconds = 1.0f;
 constexpr float kTurnedBetter = 0.01f, kTurnedBackwards = -0.03f, kTurnedAhead = 0.03f; // badness
 constexpr float kWalks = 0.35f;                                                         // m/s
-constexpr float kDriftSeconds = 0.3f; // over which that is told
+constexpr float kDriftSeconds = 0.3f;                    // over which that is told
+constexpr float kFootStands = 0.15f, kFootSwings = 0.5f; // m/s
 constexpr int kBackwardsFrames = 8;
 constexpr std::size_t kFewCells = 40;
 constexpr float kUsualHeight = 1.70f, kShortest = 1.45f, kTallest = 2.05f; // metres
@@ -55,12 +58,26 @@ double turn_of(Joint joint) noexcept {
     }
 }
 
+/// Of the person's cells; camera frame.
+Vec3f middle_of(const SeenPerson& seen) noexcept {
+    const GridCamera& camera = seen.grid.camera;
+    Vec3f sum = Vec3f::Zero();
+    for (int y = seen.mask.low[1]; y <= seen.mask.high[1]; ++y)
+        for (int x = seen.mask.low[0]; x <= seen.mask.high[0]; ++x) {
+            const auto i = static_cast<std::size_t>(y * camera.width + x);
+            if (seen.mask.cells[i] != 0)
+                sum +=
+                    camera.point(static_cast<float>(x), static_cast<float>(y), seen.grid.depth[i]);
+        }
+    return sum / static_cast<float>(std::max<std::size_t>(1, seen.mask.count));
+}
+
 } // namespace
 
 PersonTrack::PersonTrack(const body::FitModel& model, const GridCamera& camera,
                          const TrackOptions& options)
     : options_(options), body_(model), parts_(options.forest.get(), body_, camera),
-      registration_(body_, camera), search_(body_, parts_), smoother_(options.smoothing),
+      registration_(body_, camera), search_(body_, parts_, camera), smoother_(options.smoothing),
       mask_(camera) {
     const body::FitLevel& level = body_.level();
     for (const Triangle& t : level.triangles) {
@@ -83,6 +100,7 @@ bool PersonTrack::failed() const noexcept {
 
 bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& up) noexcept {
     search_.restart();
+    search_.expect(Vec3f::Zero());
     learner_.reset();
     const float height = PoseSearch::height_of(seen, up).value_or(kUsualHeight);
     // Whoever bends or sits is taller than that.
@@ -100,8 +118,12 @@ bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& u
     recovering_ = true;
     failures_ = since_turned_ = since_arm_ = 0;
     unseen_s_ = astray_s_ = 0.0f;
+    usual_ = agreement_.unexplained;
     drift_.setZero();
+    middle_ = middle_of(seen);
+    known_s_ = 0.0f;
     smoother_.reset();
+    options_.registration.stands = {1.0f, 1.0f};
     settle(seen, 0.0f);
     following_ = Following::detected;
     return true;
@@ -110,6 +132,7 @@ bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& u
 /// The other facing fits nearly as well now and then; when it fits better it is right. Nobody walks
 /// backwards for long.
 void PersonTrack::try_turned(const SeenPerson& seen) noexcept {
+    search_.expect(Vec3f::Zero()); // the margins below say it
     const float ahead = drift_.dot(pose_.rotations[0] * Vec3f::UnitZ());
     const bool backwards = ahead < -kWalks;
     if (++since_turned_ < (backwards ? kBackwardsFrames : kTryTurnedEvery) || failed()) return;
@@ -132,7 +155,11 @@ void PersonTrack::try_turned(const SeenPerson& seen) noexcept {
 
 /// An arm may have been lost where it was hidden or fast.
 void PersonTrack::try_arm(const SeenPerson& seen) noexcept {
-    if (++since_arm_ < (agreement_.unexplained > kUneasy ? kTryUneasyArmEvery : kTryArmEvery))
+    const bool lost = agreement_.unexplained > usual_ + kArmLost;
+    const bool uneasy = agreement_.unexplained > kUneasy;
+    if (++since_arm_ < (lost && uneasy ? kTryLostArmEvery
+                        : uneasy       ? kTryUneasyArmEvery
+                                       : kTryArmEvery))
         return;
     since_arm_ = 0;
     left_arm_ = !left_arm_;
@@ -165,6 +192,7 @@ void PersonTrack::predict(float dt) noexcept {
 void PersonTrack::recover(const SeenPerson& seen, const Vec3f& up) noexcept {
     if (!recovering_) search_.restart();
     recovering_ = true;
+    search_.expect(drift_);
     const auto found = search_.advance(seen, up, sure_ ? &pose_ : nullptr, registration_);
     if (found) {
         if (found->badness < search_.rate(seen, pose_, registration_)) {
@@ -186,6 +214,16 @@ void PersonTrack::recover(const SeenPerson& seen, const Vec3f& up) noexcept {
         sure_ = true;
 }
 
+/// Where the person goes; at first told from what is seen, as poses leap while the search goes on.
+void PersonTrack::drift(const SeenPerson& seen, const Vec3f& hips, float dt) noexcept {
+    const Vec3f middle = middle_of(seen);
+    const Vec3f way = sure_ ? Vec3f(pose_.hips_position - hips) : Vec3f(middle - middle_);
+    middle_ = middle;
+    known_s_ += dt;
+    drift_ += std::max(body::approach(dt, kDriftSeconds), dt / std::max(known_s_, 1e-3f)) *
+              (way / std::max(dt, 1e-3f) - drift_);
+}
+
 void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noexcept {
     if (seen.mask.count < kFewCells) {
         unseen_s_ += dt;
@@ -197,15 +235,23 @@ void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noex
     unseen_s_ = 0.0f;
     const body::Pose before = pose_;
     body::Pose pose = motion_.pose;
+    for (const Joint foot : {Joint::left_foot, Joint::right_foot})
+        options_.registration.stands[foot == Joint::left_foot ? 0 : 1] =
+            1.0f - body::smooth_step(kFootStands, kFootSwings,
+                                     velocity_[static_cast<std::size_t>(foot)].norm());
     for (int step = 0; step < options_.steps; ++step)
         if (registration_.step(seen, options_.registration, &motion_, pose) < options_.settled_rad)
             break;
     pose_ = pose;
     last_ = before;
     moving_ = true;
-    drift_ += body::approach(dt, kDriftSeconds) *
-              ((pose_.hips_position - before.hips_position) / std::max(dt, 1e-3f) - drift_);
+    drift(seen, before.hips_position, dt);
     agreement_ = registration_.judge(seen, pose_);
+    if (sure_ && failed() && failures_ == 0)
+        for (int side = 0; side < 2; ++side) {
+            since_arm_ = kTryArmEvery;
+            try_arm(seen);
+        }
     failures_ = failed() ? failures_ + 1 : 0;
     if (!sure_ || (options_.recover && failures_ >= kSearchAfter)) {
         recover(seen, up);
@@ -235,6 +281,7 @@ void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
             agreement_ = registration_.judge(seen, pose_);
         }
     }
+    usual_ += body::approach(dt, kUsualSeconds) * (agreement_.unexplained - usual_);
     rate_joints(seen);
     show(dt);
 }

@@ -74,6 +74,7 @@ class PersonTrack {
     void show(float dt) noexcept;
     void try_turned(const SeenPerson& seen) noexcept;
     void try_arm(const SeenPerson& seen) noexcept;
+    void drift(const SeenPerson& seen, const Vec3f& hips, float dt) noexcept;
     [[nodiscard]] bool failed() const noexcept;
 
     TrackOptions options_;
@@ -94,11 +95,14 @@ class PersonTrack {
     Agreement agreement_;
     int failures_ = 0; ///< frames in a row
     bool recovering_ = false;
-    bool sure_ = false;           ///< that it is somebody: the first search is over
-    int since_turned_ = 0;        ///< frames since the other facing was tried
-    int since_arm_ = 0;           ///< and since an arm was
-    bool left_arm_ = false;       ///< which that was
-    Vec3f drift_ = Vec3f::Zero(); ///< of the hips, m/s, over some frames
+    bool sure_ = false;            ///< that it is somebody: the first search is over
+    int since_turned_ = 0;         ///< frames since the other facing was tried
+    int since_arm_ = 0;            ///< and since an arm was
+    bool left_arm_ = false;        ///< which that was
+    float usual_ = 0.0f;           ///< not explained, as a rule: clothes are wider than the body
+    Vec3f drift_ = Vec3f::Zero();  ///< of the hips, m/s, over some frames
+    Vec3f middle_ = Vec3f::Zero(); ///< of the cells of the frame before
+    float known_s_ = 0.0f;         ///< since the person was found
     float unseen_s_ = 0.0f;
     float astray_s_ = 0.0f; ///< how long the pose has explained little
     body::JointTransforms joints_;

@@ -23,8 +23,10 @@ constexpr float kArmBetter = 0.035f;
 constexpr int kRounds = 8;
 constexpr float kPartsWeight = 0.5f; // of what the forest says
 constexpr float kSeesFaces = 0.05f;  // half of how much more readily it takes a person to face it
-constexpr float kThickness = 0.10f;  // metres from the seen surface to the body's middle
-constexpr float kHeadTops = 2.1f;    // the crown is so many necks above the head's joint
+constexpr float kStands = 0.25f, kWalks = 0.6f; // m/s: less is no walking, more says no more
+constexpr float kBackwards = 0.15f;             // badness of a m/s beyond that
+constexpr float kThickness = 0.10f;             // metres from the seen surface to the body's middle
+constexpr float kHeadTops = 2.1f;               // the crown is so many necks above the head's joint
 
 RegistrationOptions wide_options() {
     RegistrationOptions out;
@@ -64,7 +66,8 @@ Extent extent_of(const SeenPerson& seen, const Vec3f& up) noexcept {
 
 } // namespace
 
-PoseSearch::PoseSearch(const TrackedBody& body, PartsView& parts) : body_(body), parts_(parts) {
+PoseSearch::PoseSearch(const TrackedBody& body, PartsView& parts, const GridCamera& camera)
+    : body_(body), parts_(parts), aim_(camera) {
     const body::Skeleton& skeleton = body.model().space().model().skeleton;
     for (const auto arms : {body::usual_arms(), body::single_arms()})
         for (const body::ArmPose& arm : arms)
@@ -106,12 +109,14 @@ body::Pose PoseSearch::turned_around(const body::Pose& pose) noexcept {
 
 float PoseSearch::rate(const SeenPerson& seen, const body::Pose& pose, Registration& registration,
                        bool whole) const noexcept {
+    const float backwards = -drift_.dot(pose.rotations[0] * Vec3f::UnitZ());
+    const float odd = kBackwards * std::clamp(backwards - kStands, 0.0f, kWalks);
     const Agreement agreement = registration.judge(seen, pose, whole);
-    if (!parts_.useful()) return agreement.badness();
+    if (!parts_.useful()) return agreement.badness() + odd;
     const Vec3f to_camera = body::unit_or(-pose.hips_position, Vec3f::UnitZ());
     const float facing = to_camera.dot(pose.rotations[0] * Vec3f::UnitZ());
     const float support = parts_.support(registration.drawing()) - kSeesFaces * facing;
-    return agreement.badness() - kPartsWeight * support;
+    return agreement.badness() + odd - kPartsWeight * support;
 }
 
 void PoseSearch::keep(const SeenPerson& seen, const body::Pose& pose,
@@ -126,7 +131,7 @@ void PoseSearch::keep(const SeenPerson& seen, const body::Pose& pose,
 }
 
 void PoseSearch::improve_limbs(const SeenPerson& seen, Candidate& candidate,
-                               Registration& registration) const noexcept {
+                               Registration& registration) noexcept {
     const auto offer = [&](const body::Pose& pose) {
         const float badness = rate(seen, pose, registration, false);
         if (badness < candidate.badness) candidate = {pose, badness};
@@ -134,20 +139,28 @@ void PoseSearch::improve_limbs(const SeenPerson& seen, Candidate& candidate,
     for (const bool left : {true, false})
         for (const body::Pose& arms : arms_)
             offer(body::with_arm(candidate.pose, left, arms));
+    for (const bool left : {true, false}) {
+        (void)rate(seen, candidate.pose, registration, false);
+        for (const body::Pose& pose : aim_.reach(seen, body_, registration, candidate.pose, left))
+            offer(pose);
+    }
     for (const bool left : {true, false})
         for (const body::LegPose& leg : body::usual_legs())
             offer(body::with_leg(candidate.pose, left, leg));
 }
 
 bool PoseSearch::retry_arm(const SeenPerson& seen, bool left, const RegistrationOptions& options,
-                           body::Pose& pose, Registration& registration) const noexcept {
+                           body::Pose& pose, Registration& registration) noexcept {
     const float quick = rate(seen, pose, registration, false);
     Candidate best{pose, quick + kWorthMoving};
-    for (const body::Pose& arms : arms_) {
-        const body::Pose other = body::with_arm(pose, left, arms);
+    const auto offer = [&](const body::Pose& other) {
         const float badness = rate(seen, other, registration, false);
         if (badness < best.badness) best = {other, badness};
-    }
+    };
+    for (const body::Pose& other : aim_.reach(seen, body_, registration, pose, left))
+        offer(other);
+    for (const body::Pose& arms : arms_)
+        offer(body::with_arm(pose, left, arms));
     if (best.badness == quick + kWorthMoving) return false;
     const float as_is = rate(seen, pose, registration);
     for (int round = 0; round < kArmRounds; ++round)

@@ -2,6 +2,7 @@
 // the best ones moved onto it. The work is spread over three frames, so that none takes long.
 #pragma once
 
+#include "body_tracker/arm_aim.h"
 #include "body_tracker/parts_view.h"
 
 #include <optional>
@@ -19,10 +20,13 @@ struct FoundPose {
 class PoseSearch {
   public:
     /// `parts` is asked once a frame in which a search goes on; must outlive it.
-    PoseSearch(const TrackedBody& body, PartsView& parts);
+    PoseSearch(const TrackedBody& body, PartsView& parts, const GridCamera& camera);
 
     /// Begins anew.
     void restart() noexcept { stage_ = Stage::library; }
+
+    /// Where the person goes, m/s, camera frame: few walk backwards. Counts until it is told anew.
+    void expect(const Vec3f& drift) noexcept { drift_ = drift; }
 
     /// Goes on with one frame. `up`: unit, camera frame. `hint`: a pose that may be right too (the
     /// last one known). In the third frame the best pose; the person is not to be believed when its
@@ -36,10 +40,10 @@ class PoseSearch {
     [[nodiscard]] float rate(const SeenPerson& seen, const body::Pose& pose,
                              Registration& registration, bool whole = true) const noexcept;
 
-    /// Tries usual ways of holding one arm in place of the pose's; true when `pose` was changed for
-    /// a better one. `parts` must have looked.
+    /// Tries usual ways of holding one arm in place of the pose's, and reaching for what is not
+    /// explained; true when `pose` was changed for a better one. `parts` must have looked.
     bool retry_arm(const SeenPerson& seen, bool left, const RegistrationOptions& options,
-                   body::Pose& pose, Registration& registration) const noexcept;
+                   body::Pose& pose, Registration& registration) noexcept;
 
     /// The best pose so far, for use before the search is over; after the first frame of one.
     [[nodiscard]] const body::Pose& provisional() const noexcept { return best_.front().pose; }
@@ -63,16 +67,18 @@ class PoseSearch {
     [[nodiscard]] Vec3f hips_place(const SeenPerson& seen, const Vec3f& up) const noexcept;
     void keep(const SeenPerson& seen, const body::Pose& pose, Registration& registration) noexcept;
     void improve_limbs(const SeenPerson& seen, Candidate& candidate,
-                       Registration& registration) const noexcept;
+                       Registration& registration) noexcept;
     void refine(const SeenPerson& seen, Candidate& candidate, int rounds,
                 Registration& registration) const noexcept;
     void sort() noexcept;
 
     const TrackedBody& body_;
     PartsView& parts_;
+    ArmAim aim_;
     std::vector<body::Pose> arms_; ///< ways of holding both arms
     std::vector<Candidate> best_;  ///< best first
     Stage stage_ = Stage::library;
+    Vec3f drift_ = Vec3f::Zero();
 };
 
 } // namespace toile::body_tracker

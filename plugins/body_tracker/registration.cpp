@@ -14,12 +14,15 @@ using body::kJointCount;
 constexpr float kLeastCosine = 0.2f;     // between surface and line of sight
 constexpr float kBehind = 0.10f;         // metres: what lies so far behind the body is not it
 constexpr float kExplained = 0.06f;      // metres (P5 3.6)
+constexpr float kCloth = 0.06f;          // metres that cloth hangs beside the body
 constexpr float kSlackCells = 1.2f;      // an outline is not known better
 constexpr float kShapeSlackCells = 0.6f; // but over many frames
 constexpr double kMostTurn = 0.4;        // radians a step
 constexpr double kMostShift = 0.25;      // metres a step
 constexpr float kFloorDeviation = 0.01f;
-constexpr std::size_t kExtraEvery = 2; // every n-th cell is enough
+constexpr float kStandsBelow = 0.10f, kStandsScale = 0.04f; // metres above the floor
+constexpr float kSoleInformation = 2000.0f;                 // 1/m^2
+constexpr std::size_t kExtraEvery = 2;                      // every n-th cell is enough
 
 float geman_mcclure(float distance, float scale) noexcept {
     const float s = scale * scale;
@@ -36,6 +39,15 @@ Registration::Registration(const TrackedBody& body, const GridCamera& camera)
     visible_.reserve(n);
     for (auto* row : {&seen_x_, &seen_y_, &seen_z_})
         row->reserve(n);
+    constexpr std::array kSoles{body::Joint::left_foot, body::Joint::left_toes,
+                                body::Joint::right_foot, body::Joint::right_toes};
+    const body::SkinWeights& skin = body_.level().skin;
+    for (std::uint32_t v = 0; v < n; ++v)
+        for (std::size_t s = 0; s < kSoles.size(); ++s)
+            for (std::size_t k = 0; k < 4; ++k)
+                if (skin.joints[v][k] == static_cast<std::size_t>(kSoles[s]) &&
+                    skin.weights[v][k] > 0.5f)
+                    soles_[s].push_back(v);
     normal_.resize(kUnknowns, kUnknowns);
     gradient_.resize(kUnknowns);
     move_.resize(kUnknowns);
@@ -221,6 +233,24 @@ void Registration::add_floor(const SeenPerson& seen) noexcept {
     }
 }
 
+/// Heels and toes that are hardly above the floor stand on it: what is so low is cut off with it,
+/// and trousers hide the ankle.
+void Registration::add_soles(const SeenPerson& seen, const RegistrationOptions& options) noexcept {
+    if (!seen.floor) return;
+    for (std::size_t s = 0; s < soles_.size(); ++s) {
+        if (options.stands[s / 2] <= 0.0f) continue;
+        float lowest = kStandsBelow;
+        std::uint32_t at = 0;
+        for (const std::uint32_t v : soles_[s]) {
+            const float height = seen.floor->normal.dot(posed_.positions[v]) - seen.floor->offset;
+            if (height < lowest) lowest = height, at = v;
+        }
+        if (lowest <= 0.0f || lowest >= kStandsBelow) continue;
+        add_vertex(at, seen.floor->normal, lowest,
+                   options.stands[s / 2] * kSoleInformation * geman_mcclure(lowest, kStandsScale));
+    }
+}
+
 void Registration::add_motion(const MotionPrior& motion, const body::Pose& pose) noexcept {
     const double place = 1.0 / (motion.place_m * motion.place_m);
     normal_.diagonal().head<3>().array() += place;
@@ -245,6 +275,7 @@ double Registration::step(const SeenPerson& seen, const RegistrationOptions& opt
     add_extra(seen, options);
     add_outline(seen, options);
     add_floor(seen);
+    add_soles(seen, options);
     for (int a = 0; a < kUnknowns; ++a) {
         gradient_[a] = static_cast<double>(sum_[static_cast<std::size_t>(a)]);
         for (int b = 0; b <= a; ++b)
@@ -268,15 +299,23 @@ double Registration::step(const SeenPerson& seen, const RegistrationOptions& opt
     return turn * scale;
 }
 
-/// Is the body drawn in a neighbouring cell, about as deep? An outline may be a cell off.
-bool Registration::beside_body(int x, int y, float depth) const noexcept {
-    for (int n = 0; n < 9; ++n) {
-        const int nx = x + n % 3 - 1, ny = y + n / 3 - 1;
+/// Is the body drawn in a cell so near, about as deep? An outline may be a cell off.
+bool Registration::beside_body(int x, int y, float depth, int cells) const noexcept {
+    const int side = 2 * cells + 1;
+    for (int n = 0; n < side * side; ++n) {
+        const int nx = x + n % side - cells, ny = y + n / side - cells;
         if (nx < 0 || ny < 0 || nx >= camera_.width || ny >= camera_.height) continue;
         const float drawn = drawing_.cells[static_cast<std::size_t>(ny * camera_.width + nx)].depth;
         if (drawn != 0.0f && std::abs(drawn - depth) < kExplained) return true;
     }
     return false;
+}
+
+bool Registration::lacks_body(const SeenPerson& seen, int x, int y) const noexcept {
+    const auto i = static_cast<std::size_t>(y * camera_.width + x);
+    if (seen.mask.cells[i] == 0) return false;
+    const float drawn = drawing_.cells[i].depth, real = seen.grid.depth[i];
+    return (drawn == 0.0f || std::abs(drawn - real) >= kExplained) && !beside_body(x, y, real);
 }
 
 Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bool whole) noexcept {
@@ -288,7 +327,7 @@ Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bo
     Agreement out;
     out.cells = seen.mask.count;
     double sum = 0.0;
-    std::size_t explained = 0, lacking = 0;
+    std::size_t explained = 0, lacking = 0, astray = 0;
     const PersonMask& mask = seen.mask;
     for (int y = std::min(mask.low[1], drawing_.low[1]);
          y <= std::max(mask.high[1], drawing_.high[1]); ++y)
@@ -301,19 +340,26 @@ Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bo
                 const float off = std::abs(cell.depth - real);
                 if (cell.depth != 0.0f && off < kExplained)
                     ++explained, sum += static_cast<double>(off);
-                else if (!beside_body(x, y, real))
+                else if (!beside_body(x, y, real)) {
                     ++lacking;
+                    const auto cloth =
+                        static_cast<int>(std::lround(kCloth / camera_.footprint(real)));
+                    if (!beside_body(x, y, real, std::max(1, cloth))) ++astray;
+                }
             } else if (cell.depth != 0.0f && (real == 0.0f || real > cell.depth + kBehind)) {
                 // Beside an outline a cell may be either's.
                 const std::int32_t near = mask.nearest[i];
-                if (near < 0 || std::abs(near % camera_.width - x) > 1 ||
-                    std::abs(near / camera_.width - y) > 1)
-                    ++lacking;
+                const int off = near < 0 ? kMaskReach
+                                         : std::max(std::abs(near % camera_.width - x),
+                                                    std::abs(near / camera_.width - y));
+                if (off > 1) ++lacking;
+                if (off > 2) ++astray;
             }
         }
     if (explained > 0) out.error_m = static_cast<float>(sum / static_cast<double>(explained));
-    out.unexplained = static_cast<float>(lacking) /
-                      static_cast<float>(std::max<std::size_t>(1, explained + lacking));
+    const auto all = static_cast<float>(std::max<std::size_t>(1, explained + lacking));
+    out.unexplained = static_cast<float>(lacking) / all;
+    out.astray = static_cast<float>(astray) / all;
     return out;
 }
 

@@ -25,6 +25,7 @@ struct RegistrationOptions {
     std::size_t most_cells = 1200; ///< readings that are used, evenly taken
     double pose_weight = 0.2;      ///< of the ranges of joints
     double damping = 0.02;
+    std::array<float, 2> stands{1.0f, 1.0f}; ///< of the left and right foot: 0 while it swings
 };
 
 /// What the body should be near to, and how near: after a frame, where it was going.
@@ -38,6 +39,7 @@ struct MotionPrior {
 struct Agreement {
     float error_m = 0.0f;     ///< mean distance of the cells that the body explains
     float unexplained = 1.0f; ///< share of cells of person or body that the other lacks
+    float astray = 1.0f;      ///< of that, what is farther off than cloth hangs from the body
     std::size_t cells = 0;    ///< of the person
     /// 0 is perfect, 1 is nothing in common.
     [[nodiscard]] float badness() const noexcept { return unexplained + error_m / 0.15f; }
@@ -65,6 +67,8 @@ class Registration {
     /// Of the last step (before it moved) or judgement.
     [[nodiscard]] const PosedBody& posed() const noexcept { return posed_; }
     [[nodiscard]] const Drawing& drawing() const noexcept { return drawing_; }
+    /// Is the cell the person's, and not where that body is drawn, give or take a cell?
+    [[nodiscard]] bool lacks_body(const SeenPerson& seen, int x, int y) const noexcept;
 
     /// Normal matrix and gradient of shape and pose around the last judged pose, data only:
     /// (shapes + 69). `shapes`: so many of the first coefficients. Allocates.
@@ -88,13 +92,14 @@ class Registration {
         Vec3f at, along;
         float residual, weight;
     };
-    [[nodiscard]] bool beside_body(int x, int y, float depth) const noexcept;
+    [[nodiscard]] bool beside_body(int x, int y, float depth, int cells = 1) const noexcept;
     [[nodiscard]] Place place_of(const DrawnCell& cell) const noexcept;
     void draw_pose(const body::Pose& pose) noexcept;
     void add_readings(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_extra(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_outline(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_floor(const SeenPerson& seen) noexcept;
+    void add_soles(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_row(std::int32_t triangle, const std::array<float, 3>& weights, const Vec3f& at,
                  const Vec3f& along, float residual, float weight) noexcept;
     void add_vertex(std::uint32_t vertex, const Vec3f& along, float residual,
@@ -111,7 +116,8 @@ class Registration {
     Drawing drawing_;
     std::vector<Row> rows_; // of linearise_shape
     bool recording_ = false;
-    std::vector<std::uint32_t> visible_; // vertices that the camera sees
+    std::array<std::vector<std::uint32_t>, 4> soles_; // vertices of heels and toes
+    std::vector<std::uint32_t> visible_;              // vertices that the camera sees
     std::vector<float> seen_x_, seen_y_, seen_z_;
     std::array<float, kStride * kStride> sums_{};
     std::array<float, kStride> sum_{};

@@ -19,6 +19,7 @@ void Registration::linearise_shape(const SeenPerson& seen, const RegistrationOpt
     add_readings(seen, fewer);
     add_extra(seen, fewer);
     add_outline(seen, fewer);
+    add_soles(seen, options);
     recording_ = false;
     const Eigen::MatrixXf joints = joint_moves(shapes);
     const int size = shapes + body::kPoseUnknowns;

@@ -16,6 +16,8 @@ constexpr float kLeastStep = 0.05f;    // metres in front of the scene
 constexpr float kStepShare = 0.012f;   // ... and of the squared depth, as noise grows
 constexpr float kStillSeconds = 12.0f; // what stands so long is scene
 constexpr float kLearn = 0.05f;
+constexpr float kEmptySeconds = 0.4f; // without a reading so long: nothing is behind
+constexpr float kEmpty = 100.0f;      // metres, for that
 constexpr float kShortest = 0.5f, kTallest = 2.4f, kWidest = 2.6f;
 constexpr float kLeastArea = 0.10f, kMostArea = 2.2f; // m^2
 constexpr float kFlat = 0.02f;                        // metres: rms distance from a plane
@@ -168,11 +170,17 @@ void SceneWatch::learn(const DepthGrid& grid, std::span<const std::uint8_t> peop
                        float dt_s) noexcept {
     for (std::size_t i = 0; i < background_.size(); ++i) {
         const float d = grid.depth[i];
-        if (d == 0.0f || people[i] != 0) {
+        float& behind = background_[i];
+        if (d == 0.0f) {
+            if (behind != 0.0f) continue;
+            still_s_[i] += dt_s;
+            if (still_s_[i] > kEmptySeconds) behind = kEmpty, still_s_[i] = 0.0f;
+            continue;
+        }
+        if (people[i] != 0) {
             still_s_[i] = 0.0f;
             continue;
         }
-        float& behind = background_[i];
         const float step = kLeastStep + kStepShare * d * d;
         if (behind == 0.0f) {
             // What may be a person waits until it was looked at.

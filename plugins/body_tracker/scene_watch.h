@@ -38,6 +38,8 @@ class SceneWatch {
     [[nodiscard]] std::span<const std::uint16_t> labels() const noexcept { return labels_; }
     /// Those of a person's size, the largest first.
     [[nodiscard]] std::span<const Piece> people_like() const noexcept { return pieces_; }
+    /// Is it known what is behind a foreground cell? Then that has come before it.
+    [[nodiscard]] bool came(std::size_t cell) const noexcept { return background_[cell] != 0.0f; }
     /// May a person reach from one cell to its neighbour?
     [[nodiscard]] static bool joined(float a, float b) noexcept;
 

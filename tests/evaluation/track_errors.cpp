@@ -180,7 +180,8 @@ void TrackSums::add(const TrackSums& o) {
         stated[t] += o.stated[t], kept[t] += o.kept[t];
     longest_swap = std::max(longest_swap, o.longest_swap);
     for (std::size_t j = 0; j < kJointCount; ++j)
-        joint[j] += o.joint[j], joint_count[j] += o.joint_count[j];
+        joint[j] += o.joint[j], joint_count[j] += o.joint_count[j], off[j] += o.off[j],
+            lean[j] += o.lean[j];
     ms.insert(ms.end(), o.ms.begin(), o.ms.end());
 }
 
@@ -279,6 +280,9 @@ FrameErrors compare(const sensor::Simulator& simulator, std::size_t figure,
         sums.joint[j] += off;
         ++sums.joint_count[j];
         if (called) {
+            sums.lean[j] +=
+                1e3 * (person.joints()[j].translation - place.inverse() * truth[j].translation)
+                          .cast<double>();
             const auto tenth =
                 std::min<std::size_t>(9, static_cast<std::size_t>(10.0f * person.confidence()[j]));
             ++sums.stated[tenth];
@@ -286,9 +290,11 @@ FrameErrors compare(const sensor::Simulator& simulator, std::size_t figure,
         }
         if (shares[j] < kVisibleShare) continue;
         sums.visible += off;
+        out.off_mm[j] = static_cast<float>(off);
         out.visible_mm += off / static_cast<double>(visible);
         ++sums.visible_count;
         sums.near += off < 100.0 ? 1 : 0;
+        sums.off[j] += off < 100.0 ? 0 : 1;
         out.good = out.good && off < 100.0;
         out.failed = out.failed || off > 150.0;
     }

@@ -46,6 +46,8 @@ struct TrackSums {
     std::size_t alarms = 0;  ///< of the good frames, those not called tracked
     std::array<double, body::kJointCount> joint{};
     std::array<std::size_t, body::kJointCount> joint_count{};
+    std::array<std::size_t, body::kJointCount> off{}; ///< frames: visible, yet beyond 10 cm
+    std::array<Vec3d, body::kJointCount> lean{};      ///< sum: right, up, to the camera, mm
     std::size_t swapped = 0, longest_swap = 0; ///< frames in which left and right are exchanged
     /// Degrees about the bone of upper arms and thighs (visible): [elbow or knee bent].
     std::array<double, 2> roll{};
@@ -53,13 +55,15 @@ struct TrackSums {
     /// By tenths of the stated confidence: joints, and how many of them are within 10 cm.
     std::array<std::size_t, 10> stated{}, kept{};
     std::vector<double> ms;
+    TrackSums() { lean.fill(Vec3d::Zero()); }
     void add(const TrackSums& o);
 };
 
 /// What one frame shows: adds to `sums`. False when the person is not in view.
 struct FrameErrors {
     bool in_view = false, good = true, failed = false, called_tracked = false;
-    double visible_mm = 0.0; ///< mean of the visible joints
+    double visible_mm = 0.0;                       ///< mean of the visible joints
+    std::array<float, body::kJointCount> off_mm{}; ///< of the visible joints; 0: not visible
 };
 FrameErrors compare(const simulated_sensor::Simulator& simulator, std::size_t figure,
                     const body_tracker::PersonTrack& person, const Visibility& visibility,

@@ -46,7 +46,7 @@ struct Settings {
     std::size_t count = 1000, first = 0;
     double seconds = 8.0;
     std::string noise = "usual", only;
-    bool learn_shape = true, smooth = true, clutter = false;
+    bool learn_shape = true, smooth = true, clutter = false, frames = false;
     std::uint64_t seed = 5;
     int picture_every = 15;
 };
@@ -163,6 +163,21 @@ void add_clutter(sensor::SceneSettings& scene, toile::Random& random) {
     }
 }
 
+/// One frame's joints that are seen and far off.
+void list(std::uint32_t frame, const FrameErrors& errors, const tracker::PersonTrack& person) {
+    std::printf("  %4u %s unexplained %4.1f %%, astray %4.1f %%, %4.1f mm:", frame,
+                errors.called_tracked ? "tracked  " : "uncertain",
+                100.0 * static_cast<double>(person.agreement().unexplained),
+                100.0 * static_cast<double>(person.agreement().astray),
+                1e3 * static_cast<double>(person.agreement().error_m));
+    std::printf(errors.failed ? " FAILED" : errors.good ? " good" : "");
+    for (std::size_t j = 0; j < kJointCount; ++j)
+        if (errors.off_mm[j] >= 100.0f)
+            std::printf(" %s %.0f", std::string(body::joint_name(static_cast<Joint>(j))).c_str(),
+                        static_cast<double>(errors.off_mm[j]));
+    std::printf("\n");
+}
+
 class Evaluation {
   public:
     explicit Evaluation(const Settings& settings) : settings_(settings), model_(settings.model) {
@@ -213,7 +228,9 @@ class Evaluation {
             tracking.update(simulator.camera(0).depth().metres.data(),
                             static_cast<std::int64_t>(1e9 * scenario.time_of(f)));
             sums.ms.push_back(cpu_ms() - began);
-            (void)compare(simulator, 0, *tracking.people()[0], subject.visibility, sums);
+            const FrameErrors errors =
+                compare(simulator, 0, *tracking.people()[0], subject.visibility, sums);
+            if (settings_.frames) list(f, errors, *tracking.people()[0]);
             swaps = swapped(simulator, *tracking.people()[0]) ? swaps + 1 : 0;
             sums.swapped += swaps > 0 ? 1 : 0;
             sums.longest_swap = std::max(sums.longest_swap, swaps);
@@ -311,9 +328,14 @@ void run(const Settings& settings) {
         std::printf("  %.1f  %5.1f %% (%zu)\n", 0.1 * static_cast<double>(t),
                     percent(all.kept[t], all.stated[t]), all.stated[t]);
     for (std::size_t j = 0; j < kJointCount; ++j)
-        std::printf("  %-16s %5.1f\n", std::string(body::joint_name(static_cast<Joint>(j))).c_str(),
-                    all.joint[j] /
-                        static_cast<double>(std::max<std::size_t>(1, all.joint_count[j])));
+        std::printf(
+            "  %-16s %5.1f mm, seen and beyond 10 cm in %4.1f %% of the frames; "
+            "mean right %.0f, up %.0f, to the camera %.0f mm\n",
+            std::string(body::joint_name(static_cast<Joint>(j))).c_str(),
+            all.joint[j] / static_cast<double>(std::max<std::size_t>(1, all.joint_count[j])),
+            percent(all.off[j], all.frames), all.lean[j].x() / static_cast<double>(all.frames),
+            all.lean[j].y() / static_cast<double>(all.frames),
+            all.lean[j].z() / static_cast<double>(all.frames));
 }
 
 } // namespace
@@ -334,6 +356,7 @@ int main(int argc, char** argv) {
     app.add_option("--dressed", settings.dressed);
     app.add_option("--write-motions", settings.write_motions);
     app.add_flag("--clutter", settings.clutter, "furniture beside, behind and before the person");
+    app.add_flag("--frames", settings.frames, "each frame's joints that are seen and 10 cm off");
     app.add_option("--pictures", settings.pictures);
     app.add_option("--picture-every", settings.picture_every);
     app.add_flag("!--no-shape", settings.learn_shape);

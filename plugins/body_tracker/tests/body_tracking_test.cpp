@@ -104,6 +104,39 @@ TEST(BodyTracking, FurnitureOfAPersonsSizeIsNobodyAndDelaysNobody) {
     }
 }
 
+/// Where nothing is behind the person no reading comes: what an arm that was lost passed there was
+/// learned as scene, so that it was never found again.
+TEST(BodyTracking, AnArmThatLeapsBeforeNothingIsFoundAgain) {
+    DrawnRoom room;
+    BodyTracking tracking = tracking_in(room);
+    const body::Skeleton& skeleton = adult().space().model().skeleton;
+    for (int f = 0; f < 60; ++f) {
+        const auto arms = f < 30 ? body::usual_arms()[0] : body::usual_arms()[2];
+        const body::Pose hanging = body::usual_pose(skeleton, body::usual_arms()[0], 4.0f);
+        room.clear();
+        room.add(body::with_arm(hanging, true, body::usual_pose(skeleton, arms, 4.0f)), 0.0f, 0.2f,
+                 0.1f);
+        for (float& d : room.depth)
+            if (d > 4.0f) d = kNaN;
+        if (f >= 30) { // the upper arm is hidden, so that the rest hangs on nothing
+            const Vec3f elbow =
+                room.people[0][static_cast<std::size_t>(body::Joint::left_lower_arm)].translation;
+            const auto x = static_cast<int>(159.5f - 290.0f * elbow.x() / elbow.z());
+            for (int y = 0; y < 240; ++y)
+                for (int k = x - 3; k <= x + 3; ++k)
+                    room.depth[static_cast<std::size_t>(y * 320 + k)] = kNaN;
+        }
+        tracking.update(room.depth.data(), frame_time(f));
+        if (f < 45) continue;
+        const auto hand = static_cast<std::size_t>(body::Joint::left_hand);
+        EXPECT_LT(
+            (tracking.people()[0]->joints()[hand].translation - room.people[0][hand].translation)
+                .norm(),
+            0.08f)
+            << "frame " << f;
+    }
+}
+
 TEST(BodyTracking, GoesOnAfterBadFrames) {
     DrawnRoom room;
     BodyTracking tracking = tracking_in(room);

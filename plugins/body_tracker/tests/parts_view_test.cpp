@@ -57,7 +57,7 @@ TEST(PoseSearch, FindsALostArm) {
     const SelfSeen self(out);
     PartsView parts(&shipped(), self.body, self.grid.camera);
     parts.look(self.seen());
-    const PoseSearch search(self.body, parts);
+    PoseSearch search(self.body, parts, self.grid.camera);
     Registration registration(self.body, self.grid.camera);
     const body::Pose hanging = body::usual_pose(skeleton, ways[0], 4.0f);
     for (const bool left : {true, false}) {
