@@ -27,7 +27,8 @@ constexpr int kTurnedSteps = 6;
 constexpr int kTryArmEvery = 24, kTryUneasyArmEvery = 6, kTryLostArmEvery = 2; // frames
 constexpr float kUneasy = 0.06f;                                               // not explained
 constexpr float kArmLost = 0.025f; // more than usual for that person
-constexpr float kUsualSeconds = 1.0f;
+constexpr float kUpright = 0.9f;   // cosine
+constexpr float kUsualSeconds = 1.5f, kBetterSeconds = 0.2f;
 constexpr float kTurnedBetter = 0.01f, kTurnedBackwards = -0.03f, kTurnedAhead = 0.03f; // badness
 constexpr float kWalks = 0.35f;                                                         // m/s
 constexpr float kDriftSeconds = 0.3f;                    // over which that is told
@@ -56,6 +57,12 @@ double turn_of(Joint joint) noexcept {
     default:
         return 0.08;
     }
+}
+
+/// By the picture's upper border or a side.
+bool cut_off(const SeenPerson& seen) noexcept {
+    return seen.mask.low[1] <= 1 || seen.mask.low[0] <= 0 ||
+           seen.mask.high[0] >= seen.grid.camera.width - 1;
 }
 
 /// Of the person's cells; camera frame.
@@ -102,9 +109,11 @@ bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& u
     search_.restart();
     search_.expect(Vec3f::Zero());
     learner_.reset();
-    const float height = PoseSearch::height_of(seen, up).value_or(kUsualHeight);
+    const std::optional<float> height = PoseSearch::height_of(seen, up);
+    height_known_ = height.has_value();
+    whole_ = false;
     // Whoever bends or sits is taller than that.
-    body_.set_stature(std::clamp(height, kShortest, kTallest));
+    body_.set_stature(std::clamp(height.value_or(kUsualHeight), kShortest, kTallest));
     (void)search_.advance(seen, up, nullptr, registration_);
     pose_ = search_.provisional();
     for (int step = 0; step < kFirstSteps; ++step)
@@ -263,7 +272,23 @@ void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noex
     astray_s_ = agreement_.unexplained > kNobody ? astray_s_ + dt : 0.0f;
     if (astray_s_ > kAstraySeconds) stop();
     if (!active()) return;
+    if (!height_known_ && sure_) measure_height(seen, up);
     settle(seen, dt);
+}
+
+/// Who came into view cut off is as tall as first seen whole, and upright.
+void PersonTrack::measure_height(const SeenPerson& seen, const Vec3f& up) noexcept {
+    const std::optional<float> height = PoseSearch::height_of(seen, up);
+    if (!height || cut_off(seen)) return;
+    // Who is taller than was thought stands; else only a pose that is right tells.
+    if (*height < kUsualHeight &&
+        (failed() || up.dot(pose_.rotations[0] * Vec3f::UnitY()) < kUpright))
+        return;
+    height_known_ = true;
+    body_.set_stature(std::clamp(*height, kShortest, kTallest));
+    learner_.reset();
+    ++shape_version_;
+    agreement_ = registration_.judge(seen, pose_);
 }
 
 /// What follows from the frame's pose.
@@ -271,6 +296,10 @@ void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
     following_ = failed() ? Following::uncertain
                  : !sure_ ? Following::detected
                           : Following::tracked;
+    if (!whole_ && sure_ && !cut_off(seen) && seen.mask.high[1] < seen.grid.camera.height - 1) {
+        whole_ = true;
+        learner_.reset(); // what was learned of a part of the person says little
+    }
     if (options_.learn_shape && sure_ && !learner_.done() && agreement_.unexplained < kLearnBelow) {
         learner_.add(registration_, seen, options_.registration, body_.shape());
         if (learner_.due()) {
@@ -281,7 +310,8 @@ void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
             agreement_ = registration_.judge(seen, pose_);
         }
     }
-    usual_ += body::approach(dt, kUsualSeconds) * (agreement_.unexplained - usual_);
+    const float more = agreement_.unexplained - usual_;
+    usual_ += body::approach(dt, more > 0.0f ? kUsualSeconds : kBetterSeconds) * more;
     rate_joints(seen);
     show(dt);
 }

@@ -72,6 +72,7 @@ class PersonTrack {
     void recover(const SeenPerson& seen, const Vec3f& up) noexcept;
     void rate_joints(const SeenPerson& seen) noexcept;
     void show(float dt) noexcept;
+    void measure_height(const SeenPerson& seen, const Vec3f& up) noexcept;
     void try_turned(const SeenPerson& seen) noexcept;
     void try_arm(const SeenPerson& seen) noexcept;
     void drift(const SeenPerson& seen, const Vec3f& hips, float dt) noexcept;
@@ -95,6 +96,8 @@ class PersonTrack {
     Agreement agreement_;
     int failures_ = 0; ///< frames in a row
     bool recovering_ = false;
+    bool height_known_ = false;    ///< told when the top of the head is in view
+    bool whole_ = false;           ///< was in view from head to feet
     bool sure_ = false;            ///< that it is somebody: the first search is over
     int since_turned_ = 0;         ///< frames since the other facing was tried
     int since_arm_ = 0;            ///< and since an arm was

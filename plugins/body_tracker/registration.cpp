@@ -299,11 +299,10 @@ double Registration::step(const SeenPerson& seen, const RegistrationOptions& opt
     return turn * scale;
 }
 
-/// Is the body drawn in a cell so near, about as deep? An outline may be a cell off.
-bool Registration::beside_body(int x, int y, float depth, int cells) const noexcept {
-    const int side = 2 * cells + 1;
-    for (int n = 0; n < side * side; ++n) {
-        const int nx = x + n % side - cells, ny = y + n / side - cells;
+/// Is the body drawn in a neighbouring cell, about as deep? An outline may be a cell off.
+bool Registration::beside_body(int x, int y, float depth) const noexcept {
+    for (int n = 0; n < 9; ++n) {
+        const int nx = x + n % 3 - 1, ny = y + n / 3 - 1;
         if (nx < 0 || ny < 0 || nx >= camera_.width || ny >= camera_.height) continue;
         const float drawn = drawing_.cells[static_cast<std::size_t>(ny * camera_.width + nx)].depth;
         if (drawn != 0.0f && std::abs(drawn - depth) < kExplained) return true;
@@ -327,7 +326,7 @@ Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bo
     Agreement out;
     out.cells = seen.mask.count;
     double sum = 0.0;
-    std::size_t explained = 0, lacking = 0, astray = 0;
+    std::size_t explained = 0, lacking = 0;
     const PersonMask& mask = seen.mask;
     for (int y = std::min(mask.low[1], drawing_.low[1]);
          y <= std::max(mask.high[1], drawing_.high[1]); ++y)
@@ -340,26 +339,19 @@ Agreement Registration::judge(const SeenPerson& seen, const body::Pose& pose, bo
                 const float off = std::abs(cell.depth - real);
                 if (cell.depth != 0.0f && off < kExplained)
                     ++explained, sum += static_cast<double>(off);
-                else if (!beside_body(x, y, real)) {
+                else if (!beside_body(x, y, real))
                     ++lacking;
-                    const auto cloth =
-                        static_cast<int>(std::lround(kCloth / camera_.footprint(real)));
-                    if (!beside_body(x, y, real, std::max(1, cloth))) ++astray;
-                }
             } else if (cell.depth != 0.0f && (real == 0.0f || real > cell.depth + kBehind)) {
                 // Beside an outline a cell may be either's.
                 const std::int32_t near = mask.nearest[i];
-                const int off = near < 0 ? kMaskReach
-                                         : std::max(std::abs(near % camera_.width - x),
-                                                    std::abs(near / camera_.width - y));
-                if (off > 1) ++lacking;
-                if (off > 2) ++astray;
+                if (near < 0 || std::abs(near % camera_.width - x) > 1 ||
+                    std::abs(near / camera_.width - y) > 1)
+                    ++lacking;
             }
         }
     if (explained > 0) out.error_m = static_cast<float>(sum / static_cast<double>(explained));
-    const auto all = static_cast<float>(std::max<std::size_t>(1, explained + lacking));
-    out.unexplained = static_cast<float>(lacking) / all;
-    out.astray = static_cast<float>(astray) / all;
+    out.unexplained = static_cast<float>(lacking) /
+                      static_cast<float>(std::max<std::size_t>(1, explained + lacking));
     return out;
 }
 

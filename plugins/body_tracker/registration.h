@@ -39,7 +39,6 @@ struct MotionPrior {
 struct Agreement {
     float error_m = 0.0f;     ///< mean distance of the cells that the body explains
     float unexplained = 1.0f; ///< share of cells of person or body that the other lacks
-    float astray = 1.0f;      ///< of that, what is farther off than cloth hangs from the body
     std::size_t cells = 0;    ///< of the person
     /// 0 is perfect, 1 is nothing in common.
     [[nodiscard]] float badness() const noexcept { return unexplained + error_m / 0.15f; }
@@ -92,7 +91,7 @@ class Registration {
         Vec3f at, along;
         float residual, weight;
     };
-    [[nodiscard]] bool beside_body(int x, int y, float depth, int cells = 1) const noexcept;
+    [[nodiscard]] bool beside_body(int x, int y, float depth) const noexcept;
     [[nodiscard]] Place place_of(const DrawnCell& cell) const noexcept;
     void draw_pose(const body::Pose& pose) noexcept;
     void add_readings(const SeenPerson& seen, const RegistrationOptions& options) noexcept;

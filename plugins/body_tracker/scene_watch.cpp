@@ -10,7 +10,7 @@ namespace toile::body_tracker {
 namespace {
 
 constexpr float kFarthest = 5.2f;      // metres: people beyond are not tracked
-constexpr float kFloorCut = 0.035f;    // what is lower is floor
+constexpr float kFloorCut = 0.025f;    // what is lower is floor
 constexpr float kTilt = 0.6f;          // radians that a camera may lean
 constexpr float kLeastStep = 0.05f;    // metres in front of the scene
 constexpr float kStepShare = 0.012f;   // ... and of the squared depth, as noise grows

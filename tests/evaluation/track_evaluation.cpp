@@ -165,10 +165,9 @@ void add_clutter(sensor::SceneSettings& scene, toile::Random& random) {
 
 /// One frame's joints that are seen and far off.
 void list(std::uint32_t frame, const FrameErrors& errors, const tracker::PersonTrack& person) {
-    std::printf("  %4u %s unexplained %4.1f %%, astray %4.1f %%, %4.1f mm:", frame,
+    std::printf("  %4u %s unexplained %4.1f %%, %4.1f mm:", frame,
                 errors.called_tracked ? "tracked  " : "uncertain",
                 100.0 * static_cast<double>(person.agreement().unexplained),
-                100.0 * static_cast<double>(person.agreement().astray),
                 1e3 * static_cast<double>(person.agreement().error_m));
     std::printf(errors.failed ? " FAILED" : errors.good ? " good" : "");
     for (std::size_t j = 0; j < kJointCount; ++j)

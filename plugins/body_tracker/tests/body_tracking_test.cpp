@@ -72,6 +72,26 @@ TEST(BodyTracking, LearnsHowTallSomebodyIs) {
     }
 }
 
+/// Somebody tall who comes into view with the head cut off was taken to be of usual height, and
+/// learned as that.
+TEST(BodyTracking, LearnsHowTallSomebodyIsWhoCameTooNear) {
+    TrackedBody tall(adult());
+    tall.set_stature(1.90f);
+    DrawnRoom room;
+    BodyTracking tracking = tracking_in(room);
+    for (int f = 0; f < 90; ++f) {
+        room.clear();
+        const float z = 1.9f - 0.035f * static_cast<float>(std::clamp(f - 15, 0, 50));
+        room.add(waving(f), 0.0f, z, 0.2f, tall.shape());
+        tracking.update(room.depth.data(), frame_time(f));
+    }
+    const auto neck = [](const body::Skeleton& s) {
+        return s.rest(body::Joint::neck).y() - s.rest(body::Joint::left_toes).y();
+    };
+    EXPECT_NEAR(neck(tracking.people()[0]->body().skeleton()), neck(tall.skeleton()), 0.035f);
+    EXPECT_LT(mean_error(*tracking.people()[0], room.people[0]), 0.03f);
+}
+
 TEST(BodyTracking, NobodyInAnEmptyRoomOrBehindAPlainBox) {
     DrawnRoom room;
     BodyTracking tracking = tracking_in(room);
