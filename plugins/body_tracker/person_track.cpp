@@ -22,6 +22,7 @@ constexpr float kFurniture = 0.2f, kFurnitureSupport = 0.25f;
 constexpr float kAstraySeconds = 1.0f; // nobody is followed where nobody is
 constexpr float kLearnBelow = 0.3f;    // not explained: a wrong shape alone may do that
 constexpr int kFirstSteps = 2;
+constexpr int kMarkSteps = 2;
 constexpr int kTryTurnedEvery = 30; // frames
 constexpr int kTurnedSteps = 6;
 constexpr int kTryArmEvery = 24, kTryUneasyArmEvery = 6; // frames
@@ -60,7 +61,7 @@ double turn_of(Joint joint) noexcept {
 PersonTrack::PersonTrack(const body::FitModel& model, const GridCamera& camera,
                          const TrackOptions& options)
     : options_(options), body_(model), parts_(options.forest.get(), body_, camera),
-      registration_(body_, camera), search_(body_, parts_), smoother_(options.smoothing),
+      registration_(body_, camera), search_(body_, parts_), marks_(body_, options.marks), smoother_(options.smoothing),
       mask_(camera) {
     const body::FitLevel& level = body_.level();
     for (const Triangle& t : level.triangles) {
@@ -84,6 +85,7 @@ bool PersonTrack::failed() const noexcept {
 bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& up) noexcept {
     search_.restart();
     learner_.reset();
+    marks_.reset();
     const float height = PoseSearch::height_of(seen, up).value_or(kUsualHeight);
     // Whoever bends or sits is taller than that.
     body_.set_stature(std::clamp(height, kShortest, kTallest));
@@ -186,6 +188,16 @@ void PersonTrack::recover(const SeenPerson& seen, const Vec3f& up) noexcept {
         sure_ = true;
 }
 
+/// Places on the skin that were seen before turn limbs about their bones.
+void PersonTrack::follow_marks(const SeenPerson& seen, body::Pose& pose) noexcept {
+    marks_.find(seen, pose);
+    if (marks_.pulls().empty()) return;
+    SeenPerson with = seen;
+    with.pulls = marks_.pulls();
+    for (int step = 0; step < kMarkSteps; ++step)
+        (void)registration_.step(with, options_.registration, &motion_, pose);
+}
+
 void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noexcept {
     if (seen.mask.count < kFewCells) {
         unseen_s_ += dt;
@@ -200,6 +212,7 @@ void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noex
     for (int step = 0; step < options_.steps; ++step)
         if (registration_.step(seen, options_.registration, &motion_, pose) < options_.settled_rad)
             break;
+    follow_marks(seen, pose);
     pose_ = pose;
     last_ = before;
     moving_ = true;
@@ -235,6 +248,7 @@ void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
             agreement_ = registration_.judge(seen, pose_);
         }
     }
+    if (following_ == Following::tracked) marks_.learn(seen, pose_, dt);
     rate_joints(seen);
     show(dt);
 }

@@ -94,7 +94,7 @@ float roll_between(const body::JointTransforms& a, const body::JointTransforms& 
     const Vec3f bone_a = (place * (a[c].translation - a[j].translation)).normalized();
     const Vec3f bone_b = (b[c].translation - b[j].translation).normalized();
     const Quatf turned = body::swing(bone_a, bone_b) * place * a[j].rotation;
-    return std::abs(body::rotation_vector(b[j].rotation * turned.conjugate()).dot(bone_b));
+    return body::rotation_vector(b[j].rotation * turned.conjugate()).dot(bone_b);
 }
 
 /// How far the next joint is bent, radians.
@@ -175,13 +175,22 @@ void TrackSums::add(const TrackSums& o) {
     good_frames += o.good_frames, failed_frames += o.failed_frames;
     swapped += o.swapped, flagged += o.flagged, alarms += o.alarms;
     for (std::size_t b = 0; b < 2; ++b)
-        roll[b] += o.roll[b], roll_count[b] += o.roll_count[b];
+        roll[b] += o.roll[b], roll_count[b] += o.roll_count[b], wander[b] += o.wander[b];
+    for (std::size_t l = 0; l < marks.size(); ++l)
+        for (std::size_t k = 0; k < 2; ++k)
+            marks[l][k] += o.marks[l][k];
     for (std::size_t t = 0; t < stated.size(); ++t)
         stated[t] += o.stated[t], kept[t] += o.kept[t];
     longest_swap = std::max(longest_swap, o.longest_swap);
     for (std::size_t j = 0; j < kJointCount; ++j)
         joint[j] += o.joint[j], joint_count[j] += o.joint_count[j];
     ms.insert(ms.end(), o.ms.begin(), o.ms.end());
+}
+
+void TrackSums::end_case() {
+    for (std::size_t b = 0; b < 2; ++b)
+        for (const auto& [count, sum, squares] : {limb[0][b], limb[1][b], limb[2][b], limb[3][b]})
+            if (count > 0.0) wander[b] += squares - sum * sum / count;
 }
 
 double percent(std::size_t a, std::size_t b) {
@@ -207,6 +216,17 @@ void print(const std::string& name, TrackSums& s) {
     const auto roll = [&](std::size_t bent) {
         return s.roll[bent] / static_cast<double>(std::max<std::size_t>(1, s.roll_count[bent]));
     };
+    const auto wander = [&](std::size_t bent) {
+        return std::sqrt(s.wander[bent] /
+                         static_cast<double>(std::max<std::size_t>(1, s.roll_count[bent])));
+    };
+    const auto marks = [&](std::size_t a, std::size_t k) {
+        return static_cast<double>(s.marks[a][k] + s.marks[a + 1][k]) /
+               static_cast<double>(std::max<std::size_t>(1, s.frames));
+    };
+    std::printf("    roll wanders: bent %.1f, straight %.1f degrees; marks a frame sought / found: "
+                "upper arms %.1f / %.1f, thighs %.1f / %.1f\n",
+                wander(1), wander(0), marks(0, 0), marks(0, 1), marks(2, 0), marks(2, 1));
     std::printf(
         "    roll: bent %.1f, straight %.1f degrees; failed frames flagged %zu of %zu, false "
         "alarms %.1f %%\n",
@@ -234,13 +254,20 @@ void add_roll(const sensor::Simulator& simulator, const body::JointTransforms& t
               const body_tracker::PersonTrack& person, const std::array<float, kJointCount>& shares,
               TrackSums& sums) {
     const Quatf place(simulator.camera(0).reported_pose().linear().cast<float>());
-    for (const Joint joint : kRolled) {
+    for (std::size_t limb = 0; limb < kRolled.size(); ++limb) {
+        const Joint joint = kRolled[limb];
+        const auto& counts = person.marks().counts();
+        sums.marks[limb][0] += counts.sought[static_cast<std::size_t>(joint)];
+        sums.marks[limb][1] += counts.found[static_cast<std::size_t>(joint)];
         if (shares[static_cast<std::size_t>(joint)] < kVisibleShare) continue;
         const Joint child = child_of(joint);
         const std::size_t bent = bend_of(truth, child) > kBent ? 1 : 0;
-        sums.roll[bent] += static_cast<double>(
+        const double off = static_cast<double>(
             roll_between(person.joints(), truth, joint, child, place) * 180.0f / body::kPi);
+        sums.roll[bent] += std::abs(off);
         ++sums.roll_count[bent];
+        auto& [count, sum, squares] = sums.limb[limb][bent];
+        count += 1.0, sum += off, squares += off * off;
     }
 }
 

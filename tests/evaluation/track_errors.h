@@ -50,6 +50,11 @@ struct TrackSums {
     /// Degrees about the bone of upper arms and thighs (visible): [elbow or knee bent].
     std::array<double, 2> roll{};
     std::array<std::size_t, 2> roll_count{};
+    /// The same without each limb's mean over a case: how far roll wanders, root of mean squares.
+    std::array<double, 2> wander{};
+    std::array<std::array<std::array<double, 3>, 2>, 4> limb{}; ///< count, sum, sum of squares
+    std::array<std::array<std::size_t, 2>, 4> marks{}; ///< sought and found again, of kRolled
+    void end_case();
     /// By tenths of the stated confidence: joints, and how many of them are within 10 cm.
     std::array<std::size_t, 10> stated{}, kept{};
     std::vector<double> ms;
