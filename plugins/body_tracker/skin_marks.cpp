@@ -18,20 +18,26 @@ constexpr float kSameDepth = 0.04f;  // metres
 constexpr float kLeastContrast = 0.04f; // deviation over mean of a look worth keeping
 constexpr float kThickest = 0.12f, kThinnest = 0.025f; // metres, of limbs
 constexpr float kSharp = 0.03f;      // likeness lost a squared pixel beside a well-marked place
+// Skin on the near half of a limb stays behind when the bone rolls: shares of the bone's length.
+constexpr float kSkinLags = 0.45f;
 constexpr int kMissedTooOften = 10;
 constexpr int kSettle = 3; // rows and columns of the coarse search are so far apart at most
 
 struct Limb {
     Joint joint, child;
+    bool upper;
+    Joint end; ///< of an upper limb: where the lower one ends
 };
-constexpr std::array<Limb, 8> kLimbs{{{Joint::left_upper_arm, Joint::left_lower_arm},
-                                      {Joint::right_upper_arm, Joint::right_lower_arm},
-                                      {Joint::left_lower_arm, Joint::left_hand},
-                                      {Joint::right_lower_arm, Joint::right_hand},
-                                      {Joint::left_upper_leg, Joint::left_lower_leg},
-                                      {Joint::right_upper_leg, Joint::right_lower_leg},
-                                      {Joint::left_lower_leg, Joint::left_foot},
-                                      {Joint::right_lower_leg, Joint::right_foot}}};
+constexpr std::array<Limb, 8> kLimbs{
+    {{Joint::left_upper_arm, Joint::left_lower_arm, true, Joint::left_hand},
+     {Joint::right_upper_arm, Joint::right_lower_arm, true, Joint::right_hand},
+     {Joint::left_lower_arm, Joint::left_hand, false, Joint::left_hand},
+     {Joint::right_lower_arm, Joint::right_hand, false, Joint::right_hand},
+     {Joint::left_upper_leg, Joint::left_lower_leg, true, Joint::left_foot},
+     {Joint::right_upper_leg, Joint::right_lower_leg, true, Joint::right_foot},
+     {Joint::left_lower_leg, Joint::left_foot, false, Joint::left_foot},
+     {Joint::right_lower_leg, Joint::right_foot, false, Joint::right_foot}}};
+constexpr float kLeastBend = 0.02f;
 
 std::size_t leader_of(const body::FitLevel& level, std::size_t vertex) {
     std::array<float, kJointCount> weight{};
@@ -39,6 +45,19 @@ std::size_t leader_of(const body::FitLevel& level, std::size_t vertex) {
         weight[level.skin.joints[vertex][k]] += level.skin.weights[vertex][k];
     return static_cast<std::size_t>(std::max_element(weight.begin(), weight.end()) -
                                     weight.begin());
+}
+
+/// How well depth tells the roll of a limb: by the plane of a bent elbow or knee; 0 to 1.
+float bend_of(const body::JointTransforms& joints, const Limb& limb) noexcept {
+    // Of an upper limb the bone after it, of a lower one that before.
+    const Joint first = limb.upper ? limb.joint : *body::joint_parent(limb.joint);
+    const Joint middle = limb.upper ? limb.child : limb.joint;
+    const auto place = [&](Joint joint) -> const Vec3f& {
+        return joints[static_cast<std::size_t>(joint)].translation;
+    };
+    const Vec3f one = (place(middle) - place(first)).normalized();
+    const Vec3f other = (place(limb.upper ? limb.end : limb.child) - place(middle)).normalized();
+    return std::max(kLeastBend, one.cross(other).squaredNorm());
 }
 
 std::optional<Vec2f> pixel_of(const imaging::Intrinsics& camera, const Vec3f& point) noexcept {
@@ -51,10 +70,15 @@ std::optional<Vec2f> pixel_of(const imaging::Intrinsics& camera, const Vec3f& po
 
 SkinMarks::SkinMarks(const TrackedBody& body, const MarkOptions& options)
     : body_(body), options_(options), posed_(body.blank()) {
+    const auto& rest = body.skeleton().rest_positions;
     for (std::uint32_t v = 0; v < posed_.positions.size(); ++v) {
         const std::size_t leader = leader_of(body.level(), v);
         for (const Limb& limb : kLimbs) {
             if (static_cast<std::size_t>(limb.joint) != leader) continue;
+            const Vec3f& from = rest[static_cast<std::size_t>(limb.joint)];
+            const Vec3f bone = rest[static_cast<std::size_t>(limb.child)] - from;
+            const float along = (body.level().mean[v] - from).dot(bone) / bone.squaredNorm();
+            if (along < kSkinLags) continue;
             Mark& mark = marks_.emplace_back();
             mark.vertex = v;
             mark.joint = static_cast<std::uint8_t>(limb.joint);
@@ -224,6 +248,8 @@ void SkinMarks::pull(const GreyPicture& picture, const Mark& mark, const Frame& 
         out.along[k] = across.normalized();
         const float sharp = ways[k].dot(peak.sharpness * ways[k]);
         out.weight[k] = information * std::clamp(sharp / kSharp, 0.0f, 1.0f);
+        const float ax = std::abs(ways[k].dot(frame.a.normalized()));
+        out.weight[k] *= 1.0f + ax * ax * (options_.axial - 1.0f);
     }
     pulls_.push_back(out);
 }
@@ -262,9 +288,13 @@ void SkinMarks::find(const SeenPerson& seen, const body::Pose& pose) noexcept {
 void SkinMarks::learn(const SeenPerson& seen, const body::Pose& pose, float dt) noexcept {
     if (seen.picture == nullptr || seen.picture->empty() || options_.weight <= 0.0f) return;
     body_.pose(pose, posed_);
-    const float give = body::approach(dt, options_.forget_s);
+    std::array<float, kJointCount> gives{};
+    for (const Limb& limb : kLimbs)
+        gives[static_cast<std::size_t>(limb.joint)] =
+            body::approach(dt * bend_of(posed_.joints, limb), options_.forget_s);
     for (std::size_t i = 0; i < pulls_.size(); ++i) {
         Mark& mark = marks_[pulled_[i]];
+        const float give = gives[mark.joint];
         const Quatf& skin = posed_.rotations[mark.vertex];
         const Vec3f at = posed_.positions[mark.vertex] + skin * mark.offset;
         for (const Vec3f& along : pulls_[i].along)

@@ -264,6 +264,19 @@ void add_roll(const sensor::Simulator& simulator, const body::JointTransforms& t
         const std::size_t bent = bend_of(truth, child) > kBent ? 1 : 0;
         const double off = static_cast<double>(
             roll_between(person.joints(), truth, joint, child, place) * 180.0f / body::kPi);
+        if (getenv("DUMP")) {
+            const Vec3f bone=(truth[(std::size_t)child].translation-truth[(std::size_t)joint].translation).normalized();
+            const auto par=(std::size_t)*body::joint_parent(joint);
+            // twist of truth relative to parent
+            const Quatf rel=truth[par].rotation.conjugate()*truth[(std::size_t)joint].rotation;
+            const Vec3f rb=truth[(std::size_t)joint].rotation.conjugate()*bone;
+            const float tw=2*std::atan2(Vec3f(rel.vec()).dot(rb),rel.w())*180/body::kPi;
+            const Quatf rel2=person.joints()[par].rotation.conjugate()*person.joints()[(std::size_t)joint].rotation;
+            const Vec3f b2=(person.joints()[(std::size_t)child].translation-person.joints()[(std::size_t)joint].translation).normalized();
+            const Vec3f rb2=person.joints()[(std::size_t)joint].rotation.conjugate()*b2;
+            const float tw2=2*std::atan2(Vec3f(rel2.vec()).dot(rb2),rel2.w())*180/body::kPi;
+            std::printf("D %zu bent %.0f off %.1f truth twist %.1f mine %.1f found %d/%d\n", limb, bend_of(truth,child)*57.3, off, tw, tw2, counts.found[(std::size_t)joint], counts.sought[(std::size_t)joint]);
+        }
         sums.roll[bent] += std::abs(off);
         ++sums.roll_count[bent];
         auto& [count, sum, squares] = sums.limb[limb][bent];

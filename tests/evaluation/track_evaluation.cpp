@@ -49,6 +49,7 @@ struct Settings {
     std::string noise = "usual", only;
     bool learn_shape = true, smooth = true, clutter = false, colour = false, suit = false;
     float colour_weight = 1.0f;
+    std::vector<std::string> tune;
     std::uint64_t seed = 5;
     int picture_every = 15;
 };
@@ -208,7 +209,11 @@ class Evaluation {
         options.person.smoothing.on = settings_.smooth;
         options.person.forest = forest_;
         std::vector<std::unique_ptr<tracker::BodyTracking>> ways;
-        for (std::size_t w = 0; w < (settings_.colour ? 2U : 1U); ++w) {
+        for (std::size_t w = 0; w < (settings_.colour ? std::max(2ul,1+settings_.tune.size()) : 1U); ++w) {
+            if (w > 0 && w <= settings_.tune.size()) {
+                auto& m = options.person.marks;
+                std::sscanf(settings_.tune[w-1].c_str(), "%f,%f,%f,%f,%f", &m.weight, &m.forget_s, &m.least_likeness, &m.robust_m, &m.axial);
+            } else
             options.person.marks.weight = w == 0 ? 0.0f : settings_.colour_weight;
             ways.push_back(std::make_unique<tracker::BodyTracking>(
                 model_, simulator.camera(0).intrinsics(), simulator.camera(0).reported_pose(),
@@ -225,9 +230,9 @@ class Evaluation {
                 ways[w]->update(simulator.camera(0).depth().metres.data(),
                                 static_cast<std::int64_t>(1e9 * scenario.time_of(f)), colour);
                 sums[w].ms.push_back(cpu_ms() - began);
-                const tracker::PersonTrack& person = *ways[w]->people()[0];
-                (void)compare(simulator, 0, person, subject.visibility, sums[w]);
-                swaps[w] = swapped(simulator, person) ? swaps[w] + 1 : 0;
+                const tracker::PersonTrack& track = *ways[w]->people()[0];
+                (void)compare(simulator, 0, track, subject.visibility, sums[w]);
+                swaps[w] = swapped(simulator, track) ? swaps[w] + 1 : 0;
                 sums[w].swapped += swaps[w] > 0 ? 1 : 0;
                 sums[w].longest_swap = std::max(sums[w].longest_swap, swaps[w]);
             }
@@ -273,7 +278,7 @@ class Evaluation {
     std::shared_ptr<const tracker::Forest> forest_;
 };
 
-constexpr std::array kWays{"", " with colour"};
+constexpr std::array kWays{"", " with colour"," 2"," 3"," 4", " 5", " 6", " 7"," 8"};
 
 void print_all(const std::string& name, TrackSums& sums) {
     if (sums.frames == 0) return;
@@ -298,7 +303,7 @@ void run(const Settings& settings) {
     if (!settings.motions.empty())
         for (const char* name : {"02_01.bvh", "Boxing_Toes.bvh"})
             motions.push_back(settings.motions / name);
-    std::vector<TrackSums> all(settings.colour ? 2 : 1);
+    std::vector<TrackSums> all(settings.colour ? std::max(2ul,1+settings.tune.size()) : 1);
     std::size_t done = 0;
     for (std::size_t n = settings.first; n < people.size() && done < settings.count; ++n, ++done) {
         const body::TestPerson person = body::load_test_person(people[n]);
@@ -324,7 +329,7 @@ void run(const Settings& settings) {
             cases.push_back({file.stem().string(), file_of(file.stem().string(), file)});
         cases.push_back({"random", file_of("random", walk)});
         cases.push_back({"turn", file_of("turn", standing), 6.0});
-        if (!motions.empty())
+        if (!motions.empty() && settings.tune.empty())
             cases.push_back({"away", cases.front().motion, 0.0, std::numbers::pi});
         for (const Case& one : cases) {
             if (!settings.only.empty() && one.name != settings.only) continue;
@@ -363,6 +368,7 @@ int main(int argc, char** argv) {
     app.add_option("--picture-every", settings.picture_every);
     app.add_flag("--colour", settings.colour, "without and with the colour picture");
     app.add_option("--colour-weight", settings.colour_weight);
+    app.add_option("--tune", settings.tune);
     app.add_flag("--suit", settings.suit, "a printed sports suit on undressed people");
     app.add_flag("!--no-shape", settings.learn_shape);
     app.add_flag("!--no-smoothing", settings.smooth);
