@@ -78,7 +78,7 @@ SkinMarks::SkinMarks(const TrackedBody& body, const MarkOptions& options)
             const Vec3f& from = rest[static_cast<std::size_t>(limb.joint)];
             const Vec3f bone = rest[static_cast<std::size_t>(limb.child)] - from;
             const float along = (body.level().mean[v] - from).dot(bone) / bone.squaredNorm();
-            if (along < kSkinLags) continue;
+            if (along < options_.from_share) continue;
             Mark& mark = marks_.emplace_back();
             mark.vertex = v;
             mark.joint = static_cast<std::uint8_t>(limb.joint);

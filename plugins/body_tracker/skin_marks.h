@@ -14,7 +14,8 @@ struct MarkOptions {
     float information = 0.1f;    ///< how much of a sighting each adds: neighbours go together
     float robust_m = 0.03f;      ///< scale of Geman and McClure's weight
     float least_likeness = 0.6f; ///< correlation with the look that is kept, 0 to 1
-    float axial = 1.0f;
+    float axial = 0.3f;
+    float from_share = 0.0f;
     float forget_s = 2.0f;       ///< over which a mark gives way to where depth has it
     std::size_t most_sought = 160; ///< in a frame
 };

@@ -97,11 +97,16 @@ float roll_between(const body::JointTransforms& a, const body::JointTransforms& 
     return body::rotation_vector(b[j].rotation * turned.conjugate()).dot(bone_b);
 }
 
-/// How far the next joint is bent, radians.
-float bend_of(const body::JointTransforms& joints, Joint child) {
-    const auto c = static_cast<std::size_t>(child);
-    const auto p = static_cast<std::size_t>(*body::joint_parent(child));
-    return body::rotation_vector(joints[p].rotation.conjugate() * joints[c].rotation).norm();
+Joint child_of(Joint joint);
+
+/// How far the next joint is bent: between the two bones, radians.
+float bend_of(const body::JointTransforms& joints, Joint joint) {
+    const Joint child = child_of(joint), end = child_of(child);
+    const auto place = [&](Joint j) -> const Vec3f& {
+        return joints[static_cast<std::size_t>(j)].translation;
+    };
+    const Vec3f one = place(child) - place(joint), other = place(end) - place(child);
+    return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
 Joint child_of(Joint joint) {
@@ -112,8 +117,16 @@ Joint child_of(Joint joint) {
         return Joint::right_lower_arm;
     case Joint::left_upper_leg:
         return Joint::left_lower_leg;
-    default:
+    case Joint::right_upper_leg:
         return Joint::right_lower_leg;
+    case Joint::left_lower_arm:
+        return Joint::left_hand;
+    case Joint::right_lower_arm:
+        return Joint::right_hand;
+    case Joint::left_lower_leg:
+        return Joint::left_foot;
+    default:
+        return Joint::right_foot;
     }
 }
 
@@ -178,6 +191,7 @@ void TrackSums::add(const TrackSums& o) {
         roll[b] += o.roll[b], roll_count[b] += o.roll_count[b], wander[b] += o.wander[b];
     for (std::size_t l = 0; l < marks.size(); ++l)
         for (std::size_t k = 0; k < 2; ++k)
+            abs_limb[l][k] += o.abs_limb[l][k], cnt_limb[l][k] += o.cnt_limb[l][k],
             marks[l][k] += o.marks[l][k];
     for (std::size_t t = 0; t < stated.size(); ++t)
         stated[t] += o.stated[t], kept[t] += o.kept[t];
@@ -227,6 +241,7 @@ void print(const std::string& name, TrackSums& s) {
     std::printf("    roll wanders: bent %.1f, straight %.1f degrees; marks a frame sought / found: "
                 "upper arms %.1f / %.1f, thighs %.1f / %.1f\n",
                 wander(1), wander(0), marks(0, 0), marks(0, 1), marks(2, 0), marks(2, 1));
+    for (std::size_t b = 0; b < 2; ++b) { for (std::size_t l = 0; l < 4; ++l) std::printf(" %s limb %zu: %.1f of %.0f;", b ? "bent" : "straight", l, s.abs_limb[l][b]/std::max(1.0,s.cnt_limb[l][b]), s.cnt_limb[l][b]); std::printf("\n"); }
     std::printf(
         "    roll: bent %.1f, straight %.1f degrees; failed frames flagged %zu of %zu, false "
         "alarms %.1f %%\n",
@@ -261,24 +276,12 @@ void add_roll(const sensor::Simulator& simulator, const body::JointTransforms& t
         sums.marks[limb][1] += counts.found[static_cast<std::size_t>(joint)];
         if (shares[static_cast<std::size_t>(joint)] < kVisibleShare) continue;
         const Joint child = child_of(joint);
-        const std::size_t bent = bend_of(truth, child) > kBent ? 1 : 0;
+        const std::size_t bent = bend_of(truth, joint) > kBent ? 1 : 0;
         const double off = static_cast<double>(
             roll_between(person.joints(), truth, joint, child, place) * 180.0f / body::kPi);
-        if (getenv("DUMP")) {
-            const Vec3f bone=(truth[(std::size_t)child].translation-truth[(std::size_t)joint].translation).normalized();
-            const auto par=(std::size_t)*body::joint_parent(joint);
-            // twist of truth relative to parent
-            const Quatf rel=truth[par].rotation.conjugate()*truth[(std::size_t)joint].rotation;
-            const Vec3f rb=truth[(std::size_t)joint].rotation.conjugate()*bone;
-            const float tw=2*std::atan2(Vec3f(rel.vec()).dot(rb),rel.w())*180/body::kPi;
-            const Quatf rel2=person.joints()[par].rotation.conjugate()*person.joints()[(std::size_t)joint].rotation;
-            const Vec3f b2=(person.joints()[(std::size_t)child].translation-person.joints()[(std::size_t)joint].translation).normalized();
-            const Vec3f rb2=person.joints()[(std::size_t)joint].rotation.conjugate()*b2;
-            const float tw2=2*std::atan2(Vec3f(rel2.vec()).dot(rb2),rel2.w())*180/body::kPi;
-            std::printf("D %zu bent %.0f off %.1f truth twist %.1f mine %.1f found %d/%d\n", limb, bend_of(truth,child)*57.3, off, tw, tw2, counts.found[(std::size_t)joint], counts.sought[(std::size_t)joint]);
-        }
         sums.roll[bent] += std::abs(off);
         ++sums.roll_count[bent];
+        sums.abs_limb[limb][bent] += std::abs(off); sums.cnt_limb[limb][bent] += 1;
         auto& [count, sum, squares] = sums.limb[limb][bent];
         count += 1.0, sum += off, squares += off * off;
     }

@@ -54,6 +54,7 @@ struct TrackSums {
     std::array<double, 2> wander{};
     std::array<std::array<std::array<double, 3>, 2>, 4> limb{}; ///< count, sum, sum of squares
     std::array<std::array<std::size_t, 2>, 4> marks{}; ///< sought and found again, of kRolled
+    std::array<std::array<double, 2>, 4> abs_limb{}, cnt_limb{};
     void end_case();
     /// By tenths of the stated confidence: joints, and how many of them are within 10 cm.
     std::array<std::size_t, 10> stated{}, kept{};

@@ -212,7 +212,7 @@ class Evaluation {
         for (std::size_t w = 0; w < (settings_.colour ? std::max(2ul,1+settings_.tune.size()) : 1U); ++w) {
             if (w > 0 && w <= settings_.tune.size()) {
                 auto& m = options.person.marks;
-                std::sscanf(settings_.tune[w-1].c_str(), "%f,%f,%f,%f,%f", &m.weight, &m.forget_s, &m.least_likeness, &m.robust_m, &m.axial);
+                std::sscanf(settings_.tune[w-1].c_str(), "%f,%f,%f,%f,%f,%f", &m.weight, &m.forget_s, &m.least_likeness, &m.robust_m, &m.axial, &m.from_share);
             } else
             options.person.marks.weight = w == 0 ? 0.0f : settings_.colour_weight;
             ways.push_back(std::make_unique<tracker::BodyTracking>(
