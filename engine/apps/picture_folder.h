@@ -16,6 +16,7 @@ class PictureFolder {
 
     /// Writes 000000.png, 000001.png ... \throw Error
     void add(const imaging::Image& picture);
+    void add(const imaging::IndexedImage& picture);
 
     [[nodiscard]] std::uint64_t count() const { return count_; }
     [[nodiscard]] const std::filesystem::path& path() const { return folder_; }

@@ -53,6 +53,7 @@ class PersonTrack {
     [[nodiscard]] const TrackedBody& body() const noexcept { return body_; }
     [[nodiscard]] std::uint32_t shape_version() const noexcept { return shape_version_; }
     [[nodiscard]] PersonMask& mask() noexcept { return mask_; }
+    [[nodiscard]] const PersonMask& mask() const noexcept { return mask_; }
     [[nodiscard]] const Registration& registration() const noexcept { return registration_; }
     [[nodiscard]] const SkinMarks& marks() const noexcept { return marks_; }
 

@@ -18,8 +18,8 @@ constexpr float kSameDepth = 0.04f;  // metres
 constexpr float kLeastContrast = 0.04f; // deviation over mean of a look worth keeping
 constexpr float kThickest = 0.12f, kThinnest = 0.025f; // metres, of limbs
 constexpr float kSharp = 0.03f;      // likeness lost a squared pixel beside a well-marked place
-// Skin on the near half of a limb stays behind when the bone rolls: shares of the bone's length.
-constexpr float kSkinLags = 0.45f;
+constexpr float kSkinLags = 0.25f; // share of a bone whose skin stays behind when it rolls
+constexpr float kLengthwise = 0.3f; // weight along a bone of what has all across it
 constexpr int kMissedTooOften = 10;
 constexpr int kSettle = 3; // rows and columns of the coarse search are so far apart at most
 
@@ -28,15 +28,13 @@ struct Limb {
     bool upper;
     Joint end; ///< of an upper limb: where the lower one ends
 };
-constexpr std::array<Limb, 8> kLimbs{
+/// Arms. Legs turn little about their bones, and depth has that right to 7 degrees: marks there only
+/// kept its first error (docs/tracking.md).
+constexpr std::array<Limb, 4> kLimbs{
     {{Joint::left_upper_arm, Joint::left_lower_arm, true, Joint::left_hand},
      {Joint::right_upper_arm, Joint::right_lower_arm, true, Joint::right_hand},
      {Joint::left_lower_arm, Joint::left_hand, false, Joint::left_hand},
-     {Joint::right_lower_arm, Joint::right_hand, false, Joint::right_hand},
-     {Joint::left_upper_leg, Joint::left_lower_leg, true, Joint::left_foot},
-     {Joint::right_upper_leg, Joint::right_lower_leg, true, Joint::right_foot},
-     {Joint::left_lower_leg, Joint::left_foot, false, Joint::left_foot},
-     {Joint::right_lower_leg, Joint::right_foot, false, Joint::right_foot}}};
+     {Joint::right_lower_arm, Joint::right_hand, false, Joint::right_hand}}};
 constexpr float kLeastBend = 0.02f;
 
 std::size_t leader_of(const body::FitLevel& level, std::size_t vertex) {
@@ -78,7 +76,7 @@ SkinMarks::SkinMarks(const TrackedBody& body, const MarkOptions& options)
             const Vec3f& from = rest[static_cast<std::size_t>(limb.joint)];
             const Vec3f bone = rest[static_cast<std::size_t>(limb.child)] - from;
             const float along = (body.level().mean[v] - from).dot(bone) / bone.squaredNorm();
-            if (along < options_.from_share) continue;
+            if (along < kSkinLags) continue;
             Mark& mark = marks_.emplace_back();
             mark.vertex = v;
             mark.joint = static_cast<std::uint8_t>(limb.joint);
@@ -248,8 +246,9 @@ void SkinMarks::pull(const GreyPicture& picture, const Mark& mark, const Frame& 
         out.along[k] = across.normalized();
         const float sharp = ways[k].dot(peak.sharpness * ways[k]);
         out.weight[k] = information * std::clamp(sharp / kSharp, 0.0f, 1.0f);
-        const float ax = std::abs(ways[k].dot(frame.a.normalized()));
-        out.weight[k] *= 1.0f + ax * ax * (options_.axial - 1.0f);
+        // Depth tells better how a limb lies along its bone.
+        const float lengthwise = ways[k].dot(frame.a.normalized());
+        out.weight[k] *= 1.0f + lengthwise * lengthwise * (kLengthwise - 1.0f);
     }
     pulls_.push_back(out);
 }

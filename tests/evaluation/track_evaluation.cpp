@@ -1,7 +1,7 @@
 // Follows test people seen by one simulated camera and compares the joints with the true ones.
 //
 //     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --motions DIR [--count N] [--seconds S]
-//         [--noise usual|full] [--clutter] [--pictures DIR] [--colour [--suit]]
+//         [--noise usual|full] [--clutter] [--pictures DIR] [--colour [--suit]] [--labels]
 //     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --write-motions DIR
 //     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --dressed CASES_FOLDER
 //
@@ -16,6 +16,7 @@
 #include "body/track_file.h"
 #include "body/usual_poses.h"
 #include "body_tracker/body_tracking.h"
+#include "body_tracker/part_painter.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "evaluation/simulated_views.h"
@@ -48,8 +49,8 @@ struct Settings {
     double seconds = 8.0;
     std::string noise = "usual", only;
     bool learn_shape = true, smooth = true, clutter = false, colour = false, suit = false;
+    bool labels = false;
     float colour_weight = 1.0f;
-    std::vector<std::string> tune;
     std::uint64_t seed = 5;
     int picture_every = 15;
 };
@@ -209,11 +210,7 @@ class Evaluation {
         options.person.smoothing.on = settings_.smooth;
         options.person.forest = forest_;
         std::vector<std::unique_ptr<tracker::BodyTracking>> ways;
-        for (std::size_t w = 0; w < (settings_.colour ? std::max(2ul,1+settings_.tune.size()) : 1U); ++w) {
-            if (w > 0 && w <= settings_.tune.size()) {
-                auto& m = options.person.marks;
-                std::sscanf(settings_.tune[w-1].c_str(), "%f,%f,%f,%f,%f,%f", &m.weight, &m.forget_s, &m.least_likeness, &m.robust_m, &m.axial, &m.from_share);
-            } else
+        for (std::size_t w = 0; w < (settings_.colour ? 2U : 1U); ++w) {
             options.person.marks.weight = w == 0 ? 0.0f : settings_.colour_weight;
             ways.push_back(std::make_unique<tracker::BodyTracking>(
                 model_, simulator.camera(0).intrinsics(), simulator.camera(0).reported_pose(),
@@ -221,6 +218,8 @@ class Evaluation {
         }
         std::vector<TrackSums> sums(ways.size());
         std::vector<std::size_t> swaps(ways.size(), 0);
+        tracker::PartPainter painter(ways.back()->people()[0]->body(), forest_.get(),
+                                     simulator.camera(0).intrinsics());
         for (std::uint32_t f = 0; f < scenario.frames; ++f) {
             simulator.show(f);
             simulator.see(0);
@@ -236,6 +235,7 @@ class Evaluation {
                 sums[w].swapped += swaps[w] > 0 ? 1 : 0;
                 sums[w].longest_swap = std::max(sums[w].longest_swap, swaps[w]);
             }
+            if (settings_.labels) rate_labels(simulator, *ways.back(), person, painter, sums.back());
             if (!settings_.pictures.empty() &&
                 f % static_cast<std::uint32_t>(settings_.picture_every) == 0)
                 save_picture(*ways.back(),
@@ -278,7 +278,7 @@ class Evaluation {
     std::shared_ptr<const tracker::Forest> forest_;
 };
 
-constexpr std::array kWays{"", " with colour"," 2"," 3"," 4", " 5", " 6", " 7"," 8"};
+constexpr std::array kWays{"", " with colour"};
 
 void print_all(const std::string& name, TrackSums& sums) {
     if (sums.frames == 0) return;
@@ -303,7 +303,7 @@ void run(const Settings& settings) {
     if (!settings.motions.empty())
         for (const char* name : {"02_01.bvh", "Boxing_Toes.bvh"})
             motions.push_back(settings.motions / name);
-    std::vector<TrackSums> all(settings.colour ? std::max(2ul,1+settings.tune.size()) : 1);
+    std::vector<TrackSums> all(settings.colour ? 2 : 1);
     std::size_t done = 0;
     for (std::size_t n = settings.first; n < people.size() && done < settings.count; ++n, ++done) {
         const body::TestPerson person = body::load_test_person(people[n]);
@@ -329,7 +329,7 @@ void run(const Settings& settings) {
             cases.push_back({file.stem().string(), file_of(file.stem().string(), file)});
         cases.push_back({"random", file_of("random", walk)});
         cases.push_back({"turn", file_of("turn", standing), 6.0});
-        if (!motions.empty() && settings.tune.empty())
+        if (!motions.empty())
             cases.push_back({"away", cases.front().motion, 0.0, std::numbers::pi});
         for (const Case& one : cases) {
             if (!settings.only.empty() && one.name != settings.only) continue;
@@ -368,7 +368,7 @@ int main(int argc, char** argv) {
     app.add_option("--picture-every", settings.picture_every);
     app.add_flag("--colour", settings.colour, "without and with the colour picture");
     app.add_option("--colour-weight", settings.colour_weight);
-    app.add_option("--tune", settings.tune);
+    app.add_flag("--labels", settings.labels, "the part of each pixel (undressed people only)");
     app.add_flag("--suit", settings.suit, "a printed sports suit on undressed people");
     app.add_flag("!--no-shape", settings.learn_shape);
     app.add_flag("!--no-smoothing", settings.smooth);
