@@ -66,8 +66,8 @@ void LabelFolder::add(pipeline::PeopleSource& source) {
     image_.values = parts_.parts;
     for (std::size_t i = 0; i < image_.values.size(); ++i)
         if (parts_.people[i] > 1 && image_.values[i] != 0)
-            image_.values[i] = static_cast<std::uint8_t>(image_.values[i] +
-                                                         kPeopleApart * (parts_.people[i] - 1));
+            image_.values[i] =
+                static_cast<std::uint8_t>(image_.values[i] + kPeopleApart * (parts_.people[i] - 1));
     pictures_.add(image_);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "imaging/image.h"
+#include "imaging/indexed_image.h"
 
 #include <cstdint>
 #include <filesystem>

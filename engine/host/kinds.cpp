@@ -37,9 +37,9 @@ constexpr std::array kKinds{
     table(TOILE_CLOTH, kCloth),     table(TOILE_TOOL, kTool),
 };
 constexpr std::array kExtensions{
-    table(TOILE_PARAMETERS, kParameters), table(TOILE_STATE, kState),
-    table(TOILE_DEBUG_DRAW, kDebugDraw),  table(TOILE_TRUTH, kTruth),
-    table(TOILE_BODY_FIT, kBodyFit),      table(TOILE_SCAN_GUIDE, kScanGuide),
+    table(TOILE_PARAMETERS, kParameters),  table(TOILE_STATE, kState),
+    table(TOILE_DEBUG_DRAW, kDebugDraw),   table(TOILE_TRUTH, kTruth),
+    table(TOILE_BODY_FIT, kBodyFit),       table(TOILE_SCAN_GUIDE, kScanGuide),
     table(TOILE_PART_LABELS, kPartLabels),
 };
 constexpr std::array kHostExtensions{TOILE_THREAD_POOL};

@@ -1,7 +1,6 @@
 // Pictures in memory: 8-bit colour and metric depth.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -34,18 +33,6 @@ struct DepthImage {
 /// Writes .png (fixed compression settings: equal pictures give equal files) or .jpg. \throw Error
 void save_image(const Image& image, const std::filesystem::path& file);
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);
-
-/// A small whole number for each pixel, with a colour to look at it by.
-struct IndexedImage {
-    int width = 0;
-    int height = 0;
-    std::vector<std::uint8_t> values;                ///< (width * height) rows from the top
-    std::vector<std::array<std::uint8_t, 3>> colors; ///< sRGB of each value, 256 at most
-};
-
-/// PNG with a palette. `load_indexed` leaves the colours out. \throw Error
-void save_indexed(const IndexedImage& image, const std::filesystem::path& file);
-[[nodiscard]] IndexedImage load_indexed(const std::filesystem::path& file);
 
 /// 16-bit PNG, millimetres by default (`scale` units a metre), 0 = unknown. \throw Error
 [[nodiscard]] DepthImage load_depth(const std::filesystem::path& file, double scale = 1000.0);

@@ -53,7 +53,8 @@ PeopleSource::PeopleSource(const std::string& uri, host::Registry& registry,
       }),
       sensor_(open_()), stream_(sensor_->streams().front()),
       tracker_(find_tracker(registry, services)), table_(&tracker_->table<toile_body_source>()),
-      labels_(tracker_->find<toile_part_labels>()), joints_(wish.most_people), people_(wish.most_people) {
+      labels_(tracker_->find<toile_part_labels>()), joints_(wish.most_people),
+      people_(wish.most_people) {
     wish_for(*tracker_, "smoothing", wish.smoothing);
     tracker_->activate(limits);
     if (!stream_.world_from_camera) stream_.world_from_camera = wish.camera;

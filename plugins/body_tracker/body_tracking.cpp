@@ -199,6 +199,10 @@ void BodyTracking::take_picture(const std::uint8_t* rgba) noexcept {
             }
         }
     constexpr int kBeside = 2; // cells
+    if (picture_.camera().distorted() && high[0] >= 0) {
+        low = {0, 0}; // cells are not where their pixels are
+        high = {grid_.camera.width, grid_.camera.height};
+    }
     const int step = reducer_.step();
     for (std::size_t k = 0; k < 2; ++k) {
         low[k] = step * (low[k] - kBeside);

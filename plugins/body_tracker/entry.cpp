@@ -235,7 +235,7 @@ class BodyTracker {
     std::shared_ptr<const tracker::Forest> forest_;
     std::unique_ptr<tracker::BodyTracking> tracking_;
     std::unique_ptr<tracker::PartPainter> painter_; ///< once somebody asked for labels
-    std::vector<Told> shapes_; ///< of tracking_->people()
+    std::vector<Told> shapes_;                      ///< of tracking_->people()
     toile_stream stream_{};
     RigidTransform world_; ///< world_from_camera
     body::Skeleton given_;

@@ -21,8 +21,7 @@ PartPainter::PartPainter(const TrackedBody& body, const Forest* forest,
     for (const Triangle& t : body.level().triangles) {
         // Two of three corners decide.
         const auto part = [&](std::size_t k) { return parts[vertices[t[k]]]; };
-        triangle_part_.push_back(
-            static_cast<std::uint8_t>(part(1) == part(2) ? part(1) : part(0)));
+        triangle_part_.push_back(static_cast<std::uint8_t>(part(1) == part(2) ? part(1) : part(0)));
     }
     const DepthReducer reducer(camera);
     const GridCamera& grid = reducer.grid();

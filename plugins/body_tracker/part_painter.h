@@ -21,7 +21,8 @@ class PartPainter {
                std::span<std::uint8_t> parts, std::span<std::uint8_t> people) noexcept;
 
   private:
-    void label_cells(const DepthGrid& grid, const PersonTrack& person, std::uint8_t number) noexcept;
+    void label_cells(const DepthGrid& grid, const PersonTrack& person,
+                     std::uint8_t number) noexcept;
     [[nodiscard]] std::uint8_t drawn_part(const DepthGrid& grid, const Drawing& drawing,
                                           int cell) const noexcept;
     [[nodiscard]] std::uint8_t forest_part(const GridCamera& camera, int cell) noexcept;

@@ -61,8 +61,8 @@ double turn_of(Joint joint) noexcept {
 PersonTrack::PersonTrack(const body::FitModel& model, const GridCamera& camera,
                          const TrackOptions& options)
     : options_(options), body_(model), parts_(options.forest.get(), body_, camera),
-      registration_(body_, camera), search_(body_, parts_), marks_(body_, options.marks), smoother_(options.smoothing),
-      mask_(camera) {
+      registration_(body_, camera), search_(body_, parts_), marks_(body_, options.marks),
+      smoother_(options.smoothing), mask_(camera) {
     const body::FitLevel& level = body_.level();
     for (const Triangle& t : level.triangles) {
         std::array<float, kJointCount> weight{};

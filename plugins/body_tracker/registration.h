@@ -50,10 +50,10 @@ class GreyPicture;
 /// along . place, metres, for two directions across that line.
 struct SkinPull {
     std::uint32_t vertex = 0;
-    Vec3f offset = Vec3f::Zero();           ///< from the vertex, in the frame of the skin there
-    std::array<Vec3f, 2> along{};           ///< unit, camera frame
-    std::array<float, 2> weight{};          ///< 1 / m^2
-    float robust_m = 0.03f;                 ///< scale of Geman and McClure's weight
+    Vec3f offset = Vec3f::Zero();  ///< from the vertex, in the frame of the skin there
+    std::array<Vec3f, 2> along{};  ///< unit, camera frame
+    std::array<float, 2> weight{}; ///< 1 / m^2
+    float robust_m = 0.03f;        ///< scale of Geman and McClure's weight
 };
 
 /// What one frame shows.

@@ -11,14 +11,14 @@ namespace {
 using body::Joint;
 using body::kJointCount;
 
-constexpr int kReach = 4;            // pixels to each side that are searched
-constexpr float kSpacing = 0.006f;   // metres between samples
+constexpr int kReach = 4;                                   // pixels to each side that are searched
+constexpr float kSpacing = 0.006f;                          // metres between samples
 constexpr float kFacingToTake = 0.6f, kFacingToSeek = 0.4f; // cosine to the line of sight
-constexpr float kSameDepth = 0.04f;  // metres
+constexpr float kSameDepth = 0.04f;                         // metres
 constexpr float kLeastContrast = 0.04f; // deviation over mean of a look worth keeping
 constexpr float kThickest = 0.12f, kThinnest = 0.025f; // metres, of limbs
-constexpr float kSharp = 0.03f;      // likeness lost a squared pixel beside a well-marked place
-constexpr float kSkinLags = 0.25f; // share of a bone whose skin stays behind when it rolls
+constexpr float kSharp = 0.03f;     // likeness lost a squared pixel beside a well-marked place
+constexpr float kSkinLags = 0.25f;  // share of a bone whose skin stays behind when it rolls
 constexpr float kLengthwise = 0.3f; // weight along a bone of what has all across it
 constexpr int kMissedTooOften = 10;
 constexpr int kSettle = 3; // rows and columns of the coarse search are so far apart at most
@@ -28,8 +28,8 @@ struct Limb {
     bool upper;
     Joint end; ///< of an upper limb: where the lower one ends
 };
-/// Arms. Legs turn little about their bones, and depth has that right to 7 degrees: marks there only
-/// kept its first error (docs/tracking.md).
+/// Arms. Legs turn little about their bones, and depth has that right to 7 degrees: marks there
+/// only kept its first error (docs/tracking.md).
 constexpr std::array<Limb, 4> kLimbs{
     {{Joint::left_upper_arm, Joint::left_lower_arm, true, Joint::left_hand},
      {Joint::right_upper_arm, Joint::right_lower_arm, true, Joint::right_hand},
@@ -115,8 +115,7 @@ bool SkinMarks::frame_of(const SeenPerson& seen, const Mark& mark, Frame& out) c
     along.normalize();
     const Vec3f across = out.normal.cross(along);
     const Vec3f off = out.at - from;
-    const float radius =
-        std::clamp((off - off.dot(bone) * bone).norm(), kThinnest, kThickest);
+    const float radius = std::clamp((off - off.dot(bone) * bone).norm(), kThinnest, kThickest);
     const imaging::Intrinsics& camera = seen.picture->camera();
     constexpr float kHalf = 4.0f * kSpacing;
     const Vec3f down = kHalf * kHalf / (2.0f * radius) * out.normal;
@@ -133,8 +132,7 @@ bool SkinMarks::frame_of(const SeenPerson& seen, const Mark& mark, Frame& out) c
 }
 
 /// False when a sample, or one `margin` pixels beside, lies outside of what is known.
-bool SkinMarks::place_samples(const GreyPicture& picture, const Frame& frame,
-                              int margin) noexcept {
+bool SkinMarks::place_samples(const GreyPicture& picture, const Frame& frame, int margin) noexcept {
     const std::array<int, 2>& low = picture.low();
     const std::array<int, 2>& high = picture.high();
     std::size_t n = 0;
@@ -173,7 +171,7 @@ float SkinMarks::sample(const GreyPicture& picture, int dx, int dy,
 SkinMarks::Peak SkinMarks::search(const GreyPicture& picture, const Mark& mark) noexcept {
     constexpr int kWidth = 2 * kReach + 3; // and a border that stays unknown
     constexpr float kUnknown = -2.0f;
-    std::array<float, static_cast<std::size_t>(kWidth* kWidth)> map{};
+    std::array<float, static_cast<std::size_t>(kWidth * kWidth)> map{};
     map.fill(kUnknown);
     const auto at = [&](int dx, int dy) -> float& {
         return map[static_cast<std::size_t>((dy + kReach + 1) * kWidth + dx + kReach + 1)];
@@ -208,16 +206,16 @@ SkinMarks::Peak SkinMarks::search(const GreyPicture& picture, const Mark& mark) 
     const float best = rate(x, y);
     const float xx = 2.0f * best - rate(x - 1, y) - rate(x + 1, y);
     const float yy = 2.0f * best - rate(x, y - 1) - rate(x, y + 1);
-    const float xy = 0.25f * (rate(x + 1, y - 1) + rate(x - 1, y + 1) - rate(x + 1, y + 1) -
-                              rate(x - 1, y - 1));
+    const float xy =
+        0.25f * (rate(x + 1, y - 1) + rate(x - 1, y + 1) - rate(x + 1, y + 1) - rate(x - 1, y - 1));
     out.sharpness << xx, xy, xy, yy;
     const Vec2f slope(0.5f * (rate(x + 1, y) - rate(x - 1, y)),
                       0.5f * (rate(x, y + 1) - rate(x, y - 1)));
     out.shift = Vec2f(static_cast<float>(x), static_cast<float>(y));
     const float determinant = xx * yy - xy * xy;
     if (determinant > 0.05f * kSharp * kSharp) {
-        const Vec2f more = Vec2f(yy * slope.x() - xy * slope.y(), xx * slope.y() - xy * slope.x()) /
-                           determinant;
+        const Vec2f more =
+            Vec2f(yy * slope.x() - xy * slope.y(), xx * slope.y() - xy * slope.x()) / determinant;
         if (more.cwiseAbs().maxCoeff() < 1.0f) out.shift += more;
     }
     out.likeness = best;

@@ -54,7 +54,7 @@ class SkinMarks {
         std::uint32_t vertex = 0;
         std::uint8_t joint = 0, child = 0; ///< its bone
         bool known = false, found = false;
-        int missed = 0;              ///< times in a row
+        int missed = 0;               ///< times in a row
         Vec3f offset = Vec3f::Zero(); ///< from the vertex, in the frame of the skin there, metres
         std::array<float, kSamples> look{}; ///< sum 0, sum of squares 1
     };
@@ -69,7 +69,8 @@ class SkinMarks {
         float likeness = 0.0f;
         Eigen::Matrix2f sharpness = Eigen::Matrix2f::Zero(); ///< of the likeness around, per px^2
     };
-    [[nodiscard]] bool frame_of(const SeenPerson& seen, const Mark& mark, Frame& out) const noexcept;
+    [[nodiscard]] bool frame_of(const SeenPerson& seen, const Mark& mark,
+                                Frame& out) const noexcept;
     [[nodiscard]] bool place_samples(const GreyPicture& picture, const Frame& frame,
                                      int margin) noexcept;
     [[nodiscard]] float sample(const GreyPicture& picture, int dx, int dy,
@@ -83,7 +84,7 @@ class SkinMarks {
     PosedBody posed_;
     std::vector<Mark> marks_;
     std::vector<SkinPull> pulls_;
-    std::vector<std::size_t> pulled_; ///< mark of each pull
+    std::vector<std::size_t> pulled_;           ///< mark of each pull
     std::array<std::int32_t, kSamples> base_{}; ///< of each sample: its pixel, and weights of four
     std::array<std::array<float, 4>, kSamples> corner_{};
     Counts counts_;

@@ -24,8 +24,8 @@ const Vec3f kSkinTone(0.47f, 0.27f, 0.18f); // linear
 const Vec3f kEyeTone(0.6f, 0.57f, 0.53f);
 const Vec3f kLayerTone(0.16f, 0.17f, 0.19f); // of a painted base layer
 const Vec3f kSuitTone(0.45f, 0.40f, 0.38f);
-constexpr float kBelowNeck = 0.07f;          // metres: where it begins
-constexpr float kBelowCrotch = 0.12f;        // and where it ends
+constexpr float kBelowNeck = 0.07f;   // metres: where it begins
+constexpr float kBelowCrotch = 0.12f; // and where it ends
 
 RigidTransform turn_about_y(double angle, const Vec3f& position) {
     return {Quatf(Eigen::AngleAxisf(static_cast<float>(angle), Vec3f::UnitY())), position};

@@ -6,8 +6,8 @@
 //     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --dressed CASES_FOLDER
 //
 // `--colour`: twice on the same frames, without and with the colour picture. `--suit`: people wear
-// a printed sports suit. `--write-motions` leaves the motions of its own for each person, to dress people in them
-// (scripts/track-accuracy); `--dressed` follows what that made: surface caches
+// a printed sports suit. `--write-motions` leaves the motions of its own for each person, to dress
+// people in them (scripts/track-accuracy); `--dressed` follows what that made: surface caches
 // CASES/PERSON--MOTION.
 #include "body/joint_limits.h"
 #include "body/motion.h"
@@ -176,8 +176,8 @@ class Evaluation {
 
     /// \param folder of the test person, who wears clothes when the case is of dressed people
     /// \return one, or with colour two: without and with it
-    std::vector<TrackSums> run(const fs::path& folder, const body::TestPerson& person, const Case& one,
-                  std::uint64_t seed) {
+    std::vector<TrackSums> run(const fs::path& folder, const body::TestPerson& person,
+                               const Case& one, std::uint64_t seed) {
         toile::Random random(seed);
         sensor::Scenario scenario = toile::evaluation::empty_room();
         scenario.seed = seed;
@@ -235,7 +235,8 @@ class Evaluation {
                 sums[w].swapped += swaps[w] > 0 ? 1 : 0;
                 sums[w].longest_swap = std::max(sums[w].longest_swap, swaps[w]);
             }
-            if (settings_.labels) rate_labels(simulator, *ways.back(), person, painter, sums.back());
+            if (settings_.labels)
+                rate_labels(simulator, *ways.back(), person, painter, sums.back());
             if (!settings_.pictures.empty() &&
                 f % static_cast<std::uint32_t>(settings_.picture_every) == 0)
                 save_picture(*ways.back(),
