@@ -43,7 +43,7 @@ class BodyTracker {
                        "0: goes on from a failed frame; 1: searches anew", 0, 1, 1},
         sdk::Parameter{"colour_weight", TOILE_PARAMETER_REAL, "1",
                        "of places known again in the colour picture; 0: colour is not looked at", 0,
-                       10, 1}};
+                       10, 0}};
 
     explicit BodyTracker(sdk::Host host) : host_(host) {}
 
@@ -230,7 +230,7 @@ class BodyTracker {
     }
 
     sdk::Host host_;
-    std::array<double, 4> switches_{1.0, 1.0, 1.0, 1.0};
+    std::array<double, 4> switches_{1.0, 1.0, 1.0, 0.0};
     std::unique_ptr<body::FitModel> model_;
     std::shared_ptr<const tracker::Forest> forest_;
     std::unique_ptr<tracker::BodyTracking> tracking_;
