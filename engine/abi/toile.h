@@ -10,6 +10,7 @@
 #include "garment.h"
 #include "host.h"
 #include "parameters.h"
+#include "part_labels.h"
 #include "plugin.h"
 #include "resizer.h"
 #include "scan_guide.h"

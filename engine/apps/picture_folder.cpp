@@ -60,6 +60,11 @@ void PictureFolder::add(const imaging::Image& picture) {
     ++count_;
 }
 
+void PictureFolder::add(const imaging::IndexedImage& picture) {
+    imaging::save_indexed(picture, folder_ / numbered(count_));
+    ++count_;
+}
+
 bool PictureFolder::make_film(const std::string& name, double frames_per_second) const {
     if (count_ == 0) return false;
     const fs::path film = folder_ / (name + ".mp4");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "imaging/image.h"
+#include "imaging/indexed_image.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +17,7 @@ class PictureFolder {
 
     /// Writes 000000.png, 000001.png ... \throw Error
     void add(const imaging::Image& picture);
+    void add(const imaging::IndexedImage& picture);
 
     [[nodiscard]] std::uint64_t count() const { return count_; }
     [[nodiscard]] const std::filesystem::path& path() const { return folder_; }

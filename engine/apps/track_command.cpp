@@ -1,5 +1,6 @@
 // toile track: people before a depth camera, as joints frame by frame.
 #include "apps/commands.h"
+#include "apps/label_folder.h"
 #include "apps/picture_folder.h"
 #include "apps/plugin_limits.h"
 #include "apps/run_output.h"
@@ -17,7 +18,7 @@ namespace toile::apps {
 namespace {
 
 struct TrackOptions {
-    std::string source, out, pictures, report;
+    std::string source, out, pictures, labels, report;
     std::uint32_t people = 1;
     std::uint64_t frames = 0;
     bool realtime = false, smoothing = true;
@@ -83,6 +84,8 @@ void track(const TrackOptions& options, const GlobalOptions& global) {
         folder.emplace(options.pictures);
         picture.emplace(source);
     }
+    std::optional<LabelFolder> labels;
+    if (!options.labels.empty()) labels.emplace(options.labels, source, options.people);
     RunProgress progress;
     TrackCounts counts;
     pipeline::PeopleFrame frame;
@@ -94,6 +97,7 @@ void track(const TrackOptions& options, const GlobalOptions& global) {
         }
         counts.add(frame);
         track.add(frame.sequence, frame.timestamp_ns, frame.people);
+        if (labels) labels->add(source);
         if (picture) folder->add(picture->draw(frame));
         progress.frame();
     }
@@ -131,6 +135,11 @@ void add_track_commands(CLI::App& app, const GlobalOptions& global) {
     command
         ->add_option("--pictures", options->pictures,
                      "Folder for pictures of bones and bodies over what the camera saw, and a film")
+        ->type_name("DIR");
+    command
+        ->add_option("--labels", options->labels,
+                     "Folder for pictures of the body part that each pixel shows, and labels.json, "
+                     "which says what their values mean")
         ->type_name("DIR");
     command->add_option("--report", options->report, "File for the figures of the run, as JSON")
         ->type_name("FILE");

@@ -203,6 +203,56 @@ void survives_broken_pictures(const PluginPtr& plugin) {
     table.end(bench.instance().handle());
 }
 
+void labels_pixels(const PluginPtr& plugin) {
+    Bench bench(plugin);
+    const auto* labels = bench.instance().find<toile_part_labels>();
+    if (labels == nullptr || describe(bench).input != TOILE_SOURCE_FRAMES) return;
+    bench.activate();
+    const auto& table = bench.table<toile_body_source>();
+    const std::vector<float> some(64 * 48, 2.0f);
+    auto frame = sized<toile_frame>();
+    frame.depth_m = view_of(some);
+    const auto ask = [&](std::size_t parts_count, std::size_t people_count) {
+        return [&, parts_count, people_count](toile_instance* i) {
+            std::vector<std::uint8_t> parts(parts_count), people(people_count);
+            auto out = sized<toile_part_picture>();
+            out.parts = view_mut(parts);
+            out.people = view_mut(people);
+            return labels->labels(i, &frame, &out);
+        };
+    };
+    bench.fails("labels", "before begin", ask(64 * 48, 64 * 48));
+    const toile_stream stream = small_camera();
+    auto setup = sized<toile_body_source_setup>();
+    setup.uri = "";
+    setup.stream_count = 1;
+    setup.streams = &stream;
+    setup.max_people = 2;
+    Job job;
+    bench.ok("begin", [&](auto* i) { return table.begin(i, &setup, job.handle()); });
+    bench.fails("labels", "into a picture of another size", ask(64 * 47, 0));
+    bench.fails("labels", "with people of another size", ask(64 * 48, 64));
+    std::uint32_t sequence = 0;
+    for (const auto& picture : broken_pictures()) {
+        feeds_one(bench, picture, ++sequence);
+        frame.depth_m = view_of(picture);
+        frame.sequence = sequence;
+        Guarded<std::uint8_t> parts(picture.size()), people(picture.size());
+        auto out = sized<toile_part_picture>();
+        out.parts = parts.view();
+        out.people = people.view();
+        bench.ok("labels", [&](auto* i) { return labels->labels(i, &frame, &out); });
+        bench.rule(parts.intact() && people.intact(), "labels: writes beyond the pictures");
+        const auto told = parts.rows(), whose = people.rows();
+        for (std::size_t i = 0; i < told.size(); ++i) {
+            bench.rule(told[i] <= TOILE_PART_NECK, "labels: an unknown body part");
+            bench.rule((told[i] == 0) == (whose[i] == 0) && whose[i] <= 2,
+                       "labels: parts of nobody, or somebody without a part");
+        }
+    }
+    table.end(bench.instance().handle());
+}
+
 constexpr ContractCase kCases[] = {
     {TOILE_BODY_SOURCE, "body_source: describes its input and schemes", &describes_itself},
     {TOILE_BODY_SOURCE, "body_source: bad sources are refused with a text", &refuses_bad_sources},
@@ -210,6 +260,8 @@ constexpr ContractCase kCases[] = {
      &plays_its_sample},
     {TOILE_BODY_SOURCE, "body_source: broken camera pictures are refused or survived",
      &survives_broken_pictures},
+    {TOILE_BODY_SOURCE, "body_source: labels of pixels fill the pictures and name known parts",
+     &labels_pixels},
 };
 
 } // namespace

@@ -18,6 +18,7 @@ constexpr const char* kState[] = {"save", "load"};
 constexpr const char* kDebugDraw[] = {"lines"};
 constexpr const char* kBodyFit[] = {"fit", "surface", "report"};
 constexpr const char* kScanGuide[] = {"guide"};
+constexpr const char* kPartLabels[] = {"labels"};
 constexpr const char* kTruth[] = {"people", "camera", "surface_count", "surface"};
 
 // `n` calls now, the first `base` of them in ABI 1.0.
@@ -36,9 +37,10 @@ constexpr std::array kKinds{
     table(TOILE_CLOTH, kCloth),     table(TOILE_TOOL, kTool),
 };
 constexpr std::array kExtensions{
-    table(TOILE_PARAMETERS, kParameters), table(TOILE_STATE, kState),
-    table(TOILE_DEBUG_DRAW, kDebugDraw),  table(TOILE_TRUTH, kTruth),
-    table(TOILE_BODY_FIT, kBodyFit),      table(TOILE_SCAN_GUIDE, kScanGuide),
+    table(TOILE_PARAMETERS, kParameters),  table(TOILE_STATE, kState),
+    table(TOILE_DEBUG_DRAW, kDebugDraw),   table(TOILE_TRUTH, kTruth),
+    table(TOILE_BODY_FIT, kBodyFit),       table(TOILE_SCAN_GUIDE, kScanGuide),
+    table(TOILE_PART_LABELS, kPartLabels),
 };
 constexpr std::array kHostExtensions{TOILE_THREAD_POOL};
 
@@ -56,6 +58,7 @@ static_assert(table(TOILE_STATE, kState).size == sizeof(toile_state));
 static_assert(table(TOILE_DEBUG_DRAW, kDebugDraw).size == sizeof(toile_debug_draw));
 static_assert(table(TOILE_BODY_FIT, kBodyFit).size == sizeof(toile_body_fit));
 static_assert(table(TOILE_SCAN_GUIDE, kScanGuide).size == sizeof(toile_scan_guide));
+static_assert(table(TOILE_PART_LABELS, kPartLabels).size == sizeof(toile_part_labels));
 static_assert(table(TOILE_TRUTH, kTruth).size == sizeof(toile_truth));
 
 } // namespace

@@ -84,6 +84,10 @@ struct KindOf<toile_scan_guide> {
     static constexpr const char* id = TOILE_SCAN_GUIDE;
 };
 template <>
+struct KindOf<toile_part_labels> {
+    static constexpr const char* id = TOILE_PART_LABELS;
+};
+template <>
 struct KindOf<toile_truth> {
     static constexpr const char* id = TOILE_TRUTH;
 };

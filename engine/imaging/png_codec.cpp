@@ -30,6 +30,7 @@ struct Writer {
     png_structp png = nullptr;
     png_infop info = nullptr;
     std::vector<std::uint8_t> output;
+    std::array<png_color, 256> colors{};
     std::string error;
 
     Writer() = default;
@@ -37,6 +38,10 @@ struct Writer {
     Writer& operator=(const Writer&) = delete;
     ~Writer() { png_destroy_write_struct(&png, &info); }
 };
+
+std::size_t bytes_of(PngKind kind) {
+    return kind == PngKind::rgba8 ? 4 : kind == PngKind::grey16 ? 2 : 1;
+}
 
 [[noreturn]] void on_error(png_structp png, png_const_charp text) {
     *static_cast<std::string*>(png_get_error_ptr(png)) = text;
@@ -72,7 +77,7 @@ bool read_rows(Reader& reader, std::uint8_t* pixels, std::size_t row_bytes, PngK
         png_set_strip_16(reader.png);
         png_set_gray_to_rgb(reader.png);
         png_set_add_alpha(reader.png, 0xff, PNG_FILLER_AFTER);
-    } else {
+    } else if (kind == PngKind::grey16) {
         png_set_swap(reader.png);
     }
     const int passes = png_set_interlace_handling(reader.png);
@@ -88,18 +93,24 @@ bool read_rows(Reader& reader, std::uint8_t* pixels, std::size_t row_bytes, PngK
 }
 
 bool write_rows(Writer& writer, const std::uint8_t* pixels, std::uint32_t width,
-                std::uint32_t height, PngKind kind) {
+                std::uint32_t height, PngKind kind, PngPalette palette) {
     if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
-    const bool grey = kind == PngKind::grey16;
+    const bool grey = kind == PngKind::grey16, indexed = kind == PngKind::indexed8;
     png_set_IHDR(writer.png, writer.info, width, height, grey ? 16 : 8,
-                 grey ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 grey      ? PNG_COLOR_TYPE_GRAY
+                 : indexed ? PNG_COLOR_TYPE_PALETTE
+                           : PNG_COLOR_TYPE_RGBA,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_compression_level(writer.png, 6);
-    png_set_compression_strategy(writer.png, 1); // Z_FILTERED
-    png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
+    png_set_compression_strategy(writer.png, indexed ? 0 : 1); // Z_FILTERED
+    png_set_filter(writer.png, PNG_FILTER_TYPE_BASE,
+                   indexed ? PNG_FILTER_NONE : PNG_FILTER_SUB | PNG_FILTER_UP);
+    if (indexed)
+        png_set_PLTE(writer.png, writer.info, writer.colors.data(),
+                     static_cast<int>(palette.size()));
     png_write_info(writer.png, writer.info);
     if (grey) png_set_swap(writer.png);
-    const std::size_t row_bytes = std::size_t{width} * (grey ? 2 : 4);
+    const std::size_t row_bytes = std::size_t{width} * bytes_of(kind);
     for (std::uint32_t y = 0; y < height; ++y)
         png_write_row(writer.png, pixels + y * row_bytes);
     png_write_end(writer.png, nullptr);
@@ -125,6 +136,10 @@ void check_claims(const Reader& reader, const std::string& name, int max_side, P
         (png_get_bit_depth(reader.png, reader.info) != 16 ||
          png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY))
         throw FileError(name, "a depth picture must be a 16-bit grey PNG");
+    if (kind == PngKind::indexed8 &&
+        (png_get_bit_depth(reader.png, reader.info) != 8 ||
+         png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_PALETTE))
+        throw FileError(name, "an indexed picture must be a PNG with a palette, a byte a pixel");
 }
 
 } // namespace
@@ -146,7 +161,7 @@ PngPixels decode_png(std::span<const std::uint8_t> bytes, const std::string& nam
     PngPixels picture;
     picture.width = png_get_image_width(reader.png, reader.info);
     picture.height = png_get_image_height(reader.png, reader.info);
-    const std::size_t row_bytes = std::size_t{picture.width} * (kind == PngKind::rgba8 ? 4 : 2);
+    const std::size_t row_bytes = std::size_t{picture.width} * bytes_of(kind);
     picture.bytes.resize(row_bytes * picture.height);
     if (!read_rows(reader, picture.bytes.data(), row_bytes, kind))
         throw FileError(name, "not a good PNG: " + reader.error);
@@ -154,19 +169,25 @@ PngPixels decode_png(std::span<const std::uint8_t> bytes, const std::string& nam
 }
 
 std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> pixels, std::uint32_t width,
-                                     std::uint32_t height, PngKind kind) {
-    const std::size_t pixel_bytes = kind == PngKind::rgba8 ? 4 : 2;
-    if (width == 0 || height == 0 || pixels.size() != pixel_bytes * width * height)
+                                     std::uint32_t height, PngKind kind, PngPalette palette) {
+    if (width == 0 || height == 0 || pixels.size() != bytes_of(kind) * width * height)
         throw Error("a picture of " + std::to_string(width) + " x " + std::to_string(height) +
                     " cannot be written from " + std::to_string(pixels.size()) + " bytes");
+    if (kind == PngKind::indexed8)
+        for (const std::uint8_t value : pixels)
+            if (value >= palette.size() || palette.size() > 256)
+                throw Error("an indexed picture has no colour for its value " +
+                            std::to_string(value));
     Writer writer;
+    for (std::size_t i = 0; i < palette.size(); ++i)
+        writer.colors[i] = {palette[i][0], palette[i][1], palette[i][2]};
     writer.png =
         png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer.error, on_error, on_warning);
     writer.info = png_create_info_struct(writer.png);
     if (writer.info == nullptr) throw Error("out of memory while writing a PNG");
     png_set_user_limits(writer.png, 0x7fffffff, 0x7fffffff);
     png_set_write_fn(writer.png, &writer, on_write, on_flush);
-    if (!write_rows(writer, pixels.data(), width, height, kind))
+    if (!write_rows(writer, pixels.data(), width, height, kind, palette))
         throw Error("a PNG cannot be written: " + writer.error);
     return std::move(writer.output);
 }

@@ -53,7 +53,8 @@ PeopleSource::PeopleSource(const std::string& uri, host::Registry& registry,
       }),
       sensor_(open_()), stream_(sensor_->streams().front()),
       tracker_(find_tracker(registry, services)), table_(&tracker_->table<toile_body_source>()),
-      joints_(wish.most_people), people_(wish.most_people) {
+      labels_(tracker_->find<toile_part_labels>()), joints_(wish.most_people),
+      people_(wish.most_people) {
     wish_for(*tracker_, "smoothing", wish.smoothing);
     tracker_->activate(limits);
     if (!stream_.world_from_camera) stream_.world_from_camera = wish.camera;
@@ -99,6 +100,24 @@ bool PeopleSource::next(PeopleFrame& out) {
     out.timestamp_ns = last_ns_ = pictures_.timestamp_ns;
     read_people(out);
     return true;
+}
+
+void PeopleSource::read_parts(PartPicture& out) {
+    if (labels_ == nullptr)
+        throw Error(tracker_->id() + ": does not tell body parts (it lacks " TOILE_PART_LABELS ")");
+    out.width = pictures_.depth.width;
+    out.height = pictures_.depth.height;
+    out.parts.resize(pictures_.depth.metres.size());
+    out.people.resize(out.parts.size());
+    const toile_frame frame = frame_view(pictures_, 0);
+    auto picture = host::sized<toile_part_picture>();
+    picture.parts = host::view_mut(out.parts);
+    picture.people = host::view_mut(out.people);
+    tracker_->call("labels",
+                   [&](toile_instance* i) { return labels_->labels(i, &frame, &picture); });
+    for (const std::uint8_t part : out.parts)
+        if (part > TOILE_PART_NECK)
+            throw Error(tracker_->id() + ": tells the unknown body part " + std::to_string(part));
 }
 
 void PeopleSource::read_people(PeopleFrame& out) {

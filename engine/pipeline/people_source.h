@@ -1,6 +1,7 @@
 // A sensor and a tracker together: pictures in, people out.
 #pragma once
 
+#include "abi/part_labels.h"
 #include "body/track_file.h"
 #include "pipeline/boundary_views.h"
 #include "pipeline/frame_source.h"
@@ -30,6 +31,13 @@ struct PeopleFrame {
     double taken_s = 0.0;          ///< wall_seconds when the sensor gave it, before it was tracked
     std::vector<BodyFrame> people; ///< world, or the camera's frame when it has no place
     std::vector<std::uint64_t> shapes; ///< revision of each, of PeopleSource::shape; 0: none told
+};
+
+/// Which body part each pixel of a frame shows.
+struct PartPicture {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> parts;  ///< (width * height) body::Part
+    std::vector<std::uint8_t> people; ///< (the same) n: the n-th of PeopleFrame::people; 0: nobody
 };
 
 /// How a tracker is wished to work.
@@ -62,6 +70,11 @@ class PeopleSource {
     [[nodiscard]] const SensorFrame& pictures() const noexcept { return pictures_; }
     /// The same to keep: swapped for what was in `out`.
     void take_pictures(SensorFrame& out) noexcept { std::swap(out, pictures_); }
+    /// Can the tracker tell parts?
+    [[nodiscard]] bool tells_parts() const noexcept { return labels_ != nullptr; }
+    /// Of the frame that `next` gave last, before its pictures are taken. \throw Error when the
+    /// tracker cannot tell or fails
+    void read_parts(PartPicture& out);
     /// A recording begins again; its frames are numbered and timed on, for the tracker too.
     /// \throw Error when it cannot be opened again [worker]
     void rewind();
@@ -84,6 +97,7 @@ class PeopleSource {
     SensorStream stream_;
     std::unique_ptr<host::Instance> tracker_;
     const toile_body_source* table_ = nullptr;
+    const toile_part_labels* labels_ = nullptr; ///< null: the tracker does not offer them
     SensorFrame pictures_;
     std::map<std::uint64_t, PersonShape> shapes_;
     std::vector<JointArray> joints_;

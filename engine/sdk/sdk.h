@@ -6,6 +6,7 @@
 #include "sdk/cloth.h"
 #include "sdk/garment.h"
 #include "sdk/parameters.h"
+#include "sdk/part_labels.h"
 #include "sdk/plugin.h"
 #include "sdk/resizer.h"
 #include "sdk/scan_guide.h"

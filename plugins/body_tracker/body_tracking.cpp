@@ -27,7 +27,7 @@ std::optional<geometry::Plane> floor_of(const CameraPlace& place) {
 
 BodyTracking::BodyTracking(const body::FitModel& model, const imaging::Intrinsics& camera,
                            const CameraPlace& world_from_camera, const TrackingOptions& options)
-    : options_(options), reducer_(camera), grid_(reducer_.blank()),
+    : options_(options), reducer_(camera), grid_(reducer_.blank()), picture_(camera),
       scene_(reducer_.grid(), floor_of(world_from_camera)), owner_(reducer_.grid().size(), 0) {
     options_.most_people = std::clamp<std::size_t>(options.most_people, 1, kMostPeople);
     for (std::size_t i = 0; i < options_.most_people; ++i)
@@ -44,7 +44,7 @@ float BodyTracking::step_to(std::int64_t timestamp_ns) noexcept {
 }
 
 SeenPerson BodyTracking::seen_by(PersonTrack& person) const noexcept {
-    return {grid_, person.mask(), scene_.floor()};
+    return {grid_, person.mask(), scene_.floor(), &picture_};
 }
 
 /// 1 + whose bones are nearest, within a distance; 0: nobody's.
@@ -204,13 +204,39 @@ void BodyTracking::doubt(const Piece& piece) noexcept {
     mine->times = 0;
 }
 
-void BodyTracking::update(const float* metres, std::int64_t timestamp_ns) noexcept {
+/// Where somebody is followed.
+void BodyTracking::take_picture(const std::uint8_t* rgba) noexcept {
+    std::array<int, 2> low{grid_.camera.width, grid_.camera.height}, high{-1, -1};
+    if (options_.person.marks.weight > 0.0f && rgba != nullptr)
+        for (const auto& person : people_) {
+            if (!person->active()) continue;
+            for (std::size_t k = 0; k < 2; ++k) {
+                low[k] = std::min(low[k], person->mask().low[k]);
+                high[k] = std::max(high[k], person->mask().high[k]);
+            }
+        }
+    constexpr int kBeside = 2; // cells
+    if (picture_.camera().distorted() && high[0] >= 0) {
+        low = {0, 0}; // cells are not where their pixels are
+        high = {grid_.camera.width, grid_.camera.height};
+    }
+    const int step = reducer_.step();
+    for (std::size_t k = 0; k < 2; ++k) {
+        low[k] = step * (low[k] - kBeside);
+        high[k] = step * (high[k] + 1 + kBeside);
+    }
+    picture_.take(high[0] > low[0] ? rgba : nullptr, low, high);
+}
+
+void BodyTracking::update(const float* metres, std::int64_t timestamp_ns,
+                          const std::uint8_t* rgba) noexcept {
     const float dt = step_to(timestamp_ns);
     reducer_.reduce(metres, grid_);
     scene_.look(grid_);
     for (const auto& person : people_)
         if (person->active()) person->predict(dt);
     share_out();
+    take_picture(rgba);
     follow_all(dt);
     welcome();
     scene_.learn(grid_, owner_, dt);

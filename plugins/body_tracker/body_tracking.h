@@ -28,8 +28,10 @@ class BodyTracking {
                  const CameraPlace& world_from_camera, const TrackingOptions& options);
 
     /// The next picture: metres (width * height), NaN where unknown. Times that go back or leap by
-    /// more than a second count as a usual step.
-    void update(const float* metres, std::int64_t timestamp_ns) noexcept;
+    /// more than a second count as a usual step. `rgba` (width * height * 4): the colour picture,
+    /// when there is one that is registered to the depth.
+    void update(const float* metres, std::int64_t timestamp_ns,
+                const std::uint8_t* rgba = nullptr) noexcept;
 
     [[nodiscard]] std::span<const std::unique_ptr<PersonTrack>> people() const noexcept {
         return people_;
@@ -47,6 +49,7 @@ class BodyTracking {
     [[nodiscard]] std::uint8_t nearest_person(const Vec3f& point, float within) const noexcept;
     [[nodiscard]] bool like_a_person(std::uint16_t label) const noexcept;
     void share_out() noexcept;
+    void take_picture(const std::uint8_t* rgba) noexcept;
     void follow_all(float dt) noexcept;
     void welcome() noexcept;
     [[nodiscard]] bool look_at(const Piece& piece) noexcept;
@@ -61,6 +64,7 @@ class BodyTracking {
     TrackingOptions options_;
     DepthReducer reducer_;
     DepthGrid grid_;
+    GreyPicture picture_;
     SceneWatch scene_;
     std::vector<std::unique_ptr<PersonTrack>> people_;
     std::vector<std::uint8_t> owner_; ///< (cells) 1 + person, 0: nobody's

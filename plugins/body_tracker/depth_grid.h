@@ -42,6 +42,8 @@ class DepthReducer {
     explicit DepthReducer(const imaging::Intrinsics& camera);
 
     [[nodiscard]] const GridCamera& grid() const noexcept { return grid_; }
+    /// Pixels of the camera along a cell.
+    [[nodiscard]] int step() const noexcept { return step_; }
     /// `metres` (width * height of the camera; NaN, 0 or beyond 10 m: no reading). `out` must have
     /// been made by `blank`.
     void reduce(const float* metres, DepthGrid& out) const noexcept;

@@ -3,12 +3,14 @@
 #include "body/avatar_files.h"
 #include "body_tracker/body_tracking.h"
 #include "body_tracker/other_body.h"
+#include "body_tracker/part_painter.h"
 #include "body_tracker/parts_tool.h"
 #include "boundary/shaped_body.h"
 #include "boundary/stream_camera.h"
 #include "core/error.h"
 #include "sdk/body_source.h"
 #include "sdk/parameters.h"
+#include "sdk/part_labels.h"
 #include "sdk/plugin.h"
 #include "sdk/thread_pool.h"
 #include "sdk/views.h"
@@ -31,14 +33,17 @@ class BodyTracker {
                                     .version = "0.1.0",
                                     .vendor = "Toile"};
     using Kinds = sdk::Kinds<sdk::BodySource, sdk::Tool>;
-    using Extensions = sdk::Kinds<sdk::Parameters>;
+    using Extensions = sdk::Kinds<sdk::Parameters, sdk::PartLabels>;
     static constexpr std::array parameters{
         sdk::Parameter{"smoothing", TOILE_PARAMETER_SWITCH, "1",
                        "0: poses as each frame shows them, with their jitter", 0, 1, 1},
         sdk::Parameter{"shape", TOILE_PARAMETER_SWITCH, "1",
                        "0: everybody has the mean body; 1: shape from the first seconds", 0, 1, 1},
         sdk::Parameter{"recovery", TOILE_PARAMETER_SWITCH, "1",
-                       "0: goes on from a failed frame; 1: searches anew", 0, 1, 1}};
+                       "0: goes on from a failed frame; 1: searches anew", 0, 1, 1},
+        sdk::Parameter{"colour_weight", TOILE_PARAMETER_REAL, "1",
+                       "of places known again in the colour picture; 0: colour is not looked at", 0,
+                       10, 0}};
 
     explicit BodyTracker(sdk::Host host) : host_(host) {}
 
@@ -93,12 +98,25 @@ class BodyTracker {
             const auto depth = sdk::span_of<float>(frames[i].depth_m, "frame.depth_m");
             if (depth.size() != std::size_t{stream_.depth.width} * stream_.depth.height)
                 throw sdk::bad_argument("frame.depth_m: not of the camera's size");
-            tracking_->update(depth.data(), frames[i].timestamp_ns);
+            tracking_->update(depth.data(), frames[i].timestamp_ns, color_of(frames[i]));
             sequence_ = frames[i].sequence;
             timestamp_ns_ = frames[i].timestamp_ns;
             return TOILE_OK;
         }
         return TOILE_NO_NEW_DATA;
+    }
+
+    void label_pixels(const toile_frame& frame, std::span<std::uint8_t> parts,
+                      std::span<std::uint8_t> people) {
+        if (!tracking_) throw sdk::bad_argument("labels: called before begin");
+        const auto depth = sdk::span_of<float>(frame.depth_m, "frame.depth_m");
+        if (depth.size() != std::size_t{stream_.depth.width} * stream_.depth.height)
+            throw sdk::bad_argument("frame.depth_m: not of the camera's size");
+        if (!painter_)
+            painter_ = std::make_unique<tracker::PartPainter>(
+                tracking_->people().front()->body(), forest_.get(),
+                toile::boundary::camera_of(stream_).intrinsics);
+        painter_->paint(*tracking_, depth, parts, people);
     }
 
     std::uint32_t result(const sdk::SizedArray<toile_person>& people) {
@@ -116,6 +134,7 @@ class BodyTracker {
     }
 
     void end() {
+        painter_.reset();
         tracking_.reset();
         shapes_.clear();
     }
@@ -135,7 +154,16 @@ class BodyTracker {
             given_.rest_positions[i] = Vec3f(joints[i][0], joints[i][1], joints[i][2]);
     }
 
+    /// Null when there is none that is registered to the depth.
+    [[nodiscard]] const std::uint8_t* color_of(const toile_frame& frame) const {
+        const auto color = sdk::span_of<sdk::Byte4>(frame.color, "frame.color");
+        const bool fits = stream_.registered != 0 &&
+                          color.size() == std::size_t{stream_.depth.width} * stream_.depth.height;
+        return fits ? color.data()->data() : nullptr;
+    }
+
     void start(std::uint32_t most_people) {
+        painter_.reset();
         const toile::boundary::StreamCamera camera = toile::boundary::camera_of(stream_);
         const tracker::CameraPlace place = camera.world_from_camera;
         tracker::TrackingOptions options;
@@ -144,6 +172,7 @@ class BodyTracker {
         options.person.smoothing.on = switches_[0] != 0.0;
         options.person.learn_shape = switches_[1] != 0.0;
         options.person.recover = switches_[2] != 0.0;
+        options.person.marks.weight = static_cast<float>(switches_[3]);
         tracking_ =
             std::make_unique<tracker::BodyTracking>(*model_, camera.intrinsics, place, options);
         world_ = {};
@@ -201,11 +230,12 @@ class BodyTracker {
     }
 
     sdk::Host host_;
-    std::array<double, 3> switches_{1.0, 1.0, 1.0};
+    std::array<double, 4> switches_{1.0, 1.0, 1.0, 0.0};
     std::unique_ptr<body::FitModel> model_;
     std::shared_ptr<const tracker::Forest> forest_;
     std::unique_ptr<tracker::BodyTracking> tracking_;
-    std::vector<Told> shapes_; ///< of tracking_->people()
+    std::unique_ptr<tracker::PartPainter> painter_; ///< once somebody asked for labels
+    std::vector<Told> shapes_;                      ///< of tracking_->people()
     toile_stream stream_{};
     RigidTransform world_; ///< world_from_camera
     body::Skeleton given_;

@@ -22,6 +22,7 @@ constexpr float kFurniture = 0.2f, kFurnitureSupport = 0.25f;
 constexpr float kAstraySeconds = 1.0f; // nobody is followed where nobody is
 constexpr float kLearnBelow = 0.3f;    // not explained: a wrong shape alone may do that
 constexpr int kFirstSteps = 2;
+constexpr int kMarkSteps = 2;
 constexpr int kTryTurnedEvery = 30; // frames
 constexpr int kTurnedSteps = 6;
 constexpr int kTryArmEvery = 24, kTryUneasyArmEvery = 6, kTryLostArmEvery = 2; // frames
@@ -84,8 +85,8 @@ Vec3f middle_of(const SeenPerson& seen) noexcept {
 PersonTrack::PersonTrack(const body::FitModel& model, const GridCamera& camera,
                          const TrackOptions& options)
     : options_(options), body_(model), parts_(options.forest.get(), body_, camera),
-      registration_(body_, camera), search_(body_, parts_, camera), smoother_(options.smoothing),
-      mask_(camera) {
+      registration_(body_, camera), search_(body_, parts_, camera), marks_(body_, options.marks),
+      smoother_(options.smoothing), mask_(camera) {
     const body::FitLevel& level = body_.level();
     for (const Triangle& t : level.triangles) {
         std::array<float, kJointCount> weight{};
@@ -109,6 +110,7 @@ bool PersonTrack::start(std::uint32_t id, const SeenPerson& seen, const Vec3f& u
     search_.restart();
     search_.expect(Vec3f::Zero());
     learner_.reset();
+    marks_.reset();
     const std::optional<float> height = PoseSearch::height_of(seen, up);
     height_known_ = height.has_value();
     whole_ = false;
@@ -233,6 +235,16 @@ void PersonTrack::drift(const SeenPerson& seen, const Vec3f& hips, float dt) noe
               (way / std::max(dt, 1e-3f) - drift_);
 }
 
+/// Places on the skin that were seen before turn limbs about their bones.
+void PersonTrack::follow_marks(const SeenPerson& seen, body::Pose& pose) noexcept {
+    marks_.find(seen, pose);
+    if (marks_.pulls().empty()) return;
+    SeenPerson with = seen;
+    with.pulls = marks_.pulls();
+    for (int step = 0; step < kMarkSteps; ++step)
+        (void)registration_.step(with, options_.registration, &motion_, pose);
+}
+
 void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noexcept {
     if (seen.mask.count < kFewCells) {
         unseen_s_ += dt;
@@ -251,6 +263,7 @@ void PersonTrack::follow(const SeenPerson& seen, const Vec3f& up, float dt) noex
     for (int step = 0; step < options_.steps; ++step)
         if (registration_.step(seen, options_.registration, &motion_, pose) < options_.settled_rad)
             break;
+    follow_marks(seen, pose);
     pose_ = pose;
     last_ = before;
     moving_ = true;
@@ -312,6 +325,7 @@ void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
     }
     const float more = agreement_.unexplained - usual_;
     usual_ += body::approach(dt, more > 0.0f ? kUsualSeconds : kBetterSeconds) * more;
+    if (following_ == Following::tracked) marks_.learn(seen, pose_, dt);
     rate_joints(seen);
     show(dt);
 }

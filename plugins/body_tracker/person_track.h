@@ -5,6 +5,7 @@
 #include "body_tracker/pose_search.h"
 #include "body_tracker/pose_smoother.h"
 #include "body_tracker/shape_learner.h"
+#include "body_tracker/skin_marks.h"
 
 #include <memory>
 
@@ -16,6 +17,7 @@ struct TrackOptions {
     std::shared_ptr<const Forest> forest; ///< of body parts; null: depth alone decides
     RegistrationOptions registration;
     SmoothingOptions smoothing;
+    MarkOptions marks;          ///< of the colour picture
     int steps = 4;              ///< Gauss-Newton steps a frame at most
     double settled_rad = 0.012; ///< a step that turns no joint farther is the last
     bool learn_shape = true;
@@ -51,7 +53,9 @@ class PersonTrack {
     [[nodiscard]] const TrackedBody& body() const noexcept { return body_; }
     [[nodiscard]] std::uint32_t shape_version() const noexcept { return shape_version_; }
     [[nodiscard]] PersonMask& mask() noexcept { return mask_; }
+    [[nodiscard]] const PersonMask& mask() const noexcept { return mask_; }
     [[nodiscard]] const Registration& registration() const noexcept { return registration_; }
+    [[nodiscard]] const SkinMarks& marks() const noexcept { return marks_; }
 
     /// Of a joint in the camera's frame, m/s and rad/s; 0 in the first frame.
     [[nodiscard]] const Vec3f& velocity(std::size_t joint) const noexcept {
@@ -68,6 +72,7 @@ class PersonTrack {
     }
 
   private:
+    void follow_marks(const SeenPerson& seen, body::Pose& pose) noexcept;
     void settle(const SeenPerson& seen, float dt) noexcept;
     void recover(const SeenPerson& seen, const Vec3f& up) noexcept;
     void rate_joints(const SeenPerson& seen) noexcept;
@@ -83,6 +88,7 @@ class PersonTrack {
     PartsView parts_;
     Registration registration_;
     PoseSearch search_;
+    SkinMarks marks_;
     ShapeLearner learner_;
     PoseSmoother smoother_;
     PersonMask mask_;

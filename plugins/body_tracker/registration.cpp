@@ -251,6 +251,20 @@ void Registration::add_soles(const SeenPerson& seen, const RegistrationOptions& 
     }
 }
 
+/// P5 3.2.1 with lines of sight for points: the depth along them is the readings' matter.
+void Registration::add_pulls(const SeenPerson& seen) noexcept {
+    for (const SkinPull& pull : seen.pulls) {
+        const std::int32_t corner = body_.corner_of(pull.vertex);
+        const Vec3f at =
+            posed_.positions[pull.vertex] + posed_.rotations[pull.vertex] * pull.offset;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const float residual = pull.along[k].dot(at);
+            add_row(corner / 3, TrackedBody::weights_of(corner), at, pull.along[k], residual,
+                    pull.weight[k] * geman_mcclure(residual, pull.robust_m));
+        }
+    }
+}
+
 void Registration::add_motion(const MotionPrior& motion, const body::Pose& pose) noexcept {
     const double place = 1.0 / (motion.place_m * motion.place_m);
     normal_.diagonal().head<3>().array() += place;
@@ -276,6 +290,7 @@ double Registration::step(const SeenPerson& seen, const RegistrationOptions& opt
     add_outline(seen, options);
     add_floor(seen);
     add_soles(seen, options);
+    add_pulls(seen);
     for (int a = 0; a < kUnknowns; ++a) {
         gradient_[a] = static_cast<double>(sum_[static_cast<std::size_t>(a)]);
         for (int b = 0; b <= a; ++b)

@@ -8,6 +8,7 @@
 #include "geometry/slice.h"
 
 #include <optional>
+#include <span>
 
 namespace toile::body_tracker {
 
@@ -44,11 +45,25 @@ struct Agreement {
     [[nodiscard]] float badness() const noexcept { return unexplained + error_m / 0.15f; }
 };
 
+class GreyPicture;
+
+/// A place on the skin that was seen again: it must come to lie on a line of sight. Residuals are
+/// along . place, metres, for two directions across that line.
+struct SkinPull {
+    std::uint32_t vertex = 0;
+    Vec3f offset = Vec3f::Zero();  ///< from the vertex, in the frame of the skin there
+    std::array<Vec3f, 2> along{};  ///< unit, camera frame
+    std::array<float, 2> weight{}; ///< 1 / m^2
+    float robust_m = 0.03f;        ///< scale of Geman and McClure's weight
+};
+
 /// What one frame shows.
 struct SeenPerson {
     const DepthGrid& grid;
     const PersonMask& mask;
     std::optional<geometry::Plane> floor; ///< camera frame
+    const GreyPicture* picture = nullptr; ///< null: no colour
+    std::span<const SkinPull> pulls{};    ///< of the colour picture
 };
 
 /// Keeps its work space; not for several threads at once. After it is made nothing allocates.
@@ -99,6 +114,7 @@ class Registration {
     void add_outline(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
     void add_floor(const SeenPerson& seen) noexcept;
     void add_soles(const SeenPerson& seen, const RegistrationOptions& options) noexcept;
+    void add_pulls(const SeenPerson& seen) noexcept;
     void add_row(std::int32_t triangle, const std::array<float, 3>& weights, const Vec3f& at,
                  const Vec3f& along, float residual, float weight) noexcept;
     void add_vertex(std::uint32_t vertex, const Vec3f& along, float residual,

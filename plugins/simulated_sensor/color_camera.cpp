@@ -178,6 +178,11 @@ Vec3f grain_color(Grain grain, const Vec3f& p) noexcept {
     case Grain::plaster:
         return Vec3f::Constant(1.0f + 0.03f * value_noise(12.0f * p) +
                                0.02f * value_noise(2.0f * p));
+    case Grain::print: { // dark and light patches, 2 to 5 cm wide
+        const float n = value_noise(22.0f * p) + 0.5f * value_noise(50.0f * p);
+        const float t = std::clamp((n + 0.15f) / 0.3f, 0.0f, 1.0f);
+        return Vec3f::Constant(0.35f + 0.9f * t * t * (3.0f - 2.0f * t));
+    }
     default:
         return Vec3f::Ones();
     }

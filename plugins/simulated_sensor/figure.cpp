@@ -8,6 +8,7 @@
 #include "body/test_person.h"
 #include "core/error.h"
 #include "simulated_sensor/breath.h"
+#include "simulated_sensor/color_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +23,9 @@ using body::SurfaceRole;
 const Vec3f kSkinTone(0.47f, 0.27f, 0.18f); // linear
 const Vec3f kEyeTone(0.6f, 0.57f, 0.53f);
 const Vec3f kLayerTone(0.16f, 0.17f, 0.19f); // of a painted base layer
-constexpr float kBelowNeck = 0.07f;          // metres: where it begins
-constexpr float kBelowCrotch = 0.12f;        // and where it ends
+const Vec3f kSuitTone(0.45f, 0.40f, 0.38f);
+constexpr float kBelowNeck = 0.07f;   // metres: where it begins
+constexpr float kBelowCrotch = 0.12f; // and where it ends
 
 RigidTransform turn_about_y(double angle, const Vec3f& position) {
     return {Quatf(Eigen::AngleAxisf(static_cast<float>(angle), Vec3f::UnitY())), position};
@@ -167,8 +169,9 @@ class AvatarFigure : public Figure {
     std::optional<HairCap> hair_;
 };
 
-/// Skin, and a base layer painted on trunk and thighs as avatars have one.
-std::vector<Vec3f> paint(const body::TestPerson& person, const Vec3f& skin) {
+/// Skin, and a base layer painted on trunk and thighs as avatars have one; `suit`: a printed one on
+/// everything but head and neck.
+std::vector<Vec3f> paint(const body::TestPerson& person, const Vec3f& skin, bool suit) {
     const float top = person.skeleton.rest(body::Joint::neck).y() - kBelowNeck;
     const float bottom = static_cast<float>(person.lengths.at("crotch_height")) - kBelowCrotch;
     std::vector<Vec3f> out(person.rest.positions.size(), skin);
@@ -179,6 +182,8 @@ std::vector<Vec3f> paint(const body::TestPerson& person, const Vec3f& skin) {
                            part == body::Part::left_upper_leg ||
                            part == body::Part::right_upper_leg;
         if (trunk && y < top && y > bottom) out[v] = kLayerTone;
+        if (suit && part != body::Part::head && part != body::Part::neck)
+            out[v] = kSuitTone.cwiseProduct(grain_color(Grain::print, person.rest.positions[v]));
     }
     return out;
 }
@@ -195,7 +200,7 @@ class TestPersonFigure : public Figure {
                               {},
                               person_.rest.positions,
                               {Vec3f::Ones(), nullptr, Grain::skin},
-                              paint(person_, settings.skin.value_or(kSkinTone))},
+                              paint(person_, settings.skin.value_or(kSkinTone), settings.suit)},
                              person_.rest.positions,
                              SurfaceRole::body});
         surfaces_.push_back({{"eyes",

@@ -218,6 +218,9 @@ PersonSettings read_person(JsonObject& person, const Reader& reader) {
         if (!moves) throw person.error("hair", "needs an avatar or a test person");
     }
     if (person.has("skin")) out.skin = color_or(person, "skin", Vec3f::Ones());
+    out.suit = switch_or(person, "suit", out.suit);
+    if (out.suit && out.kind != BodyKind::test_person)
+        throw person.error("suit", "only a test person has one");
     read_carried(person, reader, out);
     if (!moves && !out.carried.empty())
         throw person.error("carries", "needs an avatar or a test person");

@@ -38,6 +38,7 @@ struct PersonSettings {
     std::optional<HairSettings> hair;
     std::vector<CarriedSettings> carried;
     std::optional<Vec3f> skin; ///< linear; instead of the body's own colours
+    bool suit = false;         ///< a test person wears a printed sports suit, as tight as skin
 };
 
 struct ObjectSettings {

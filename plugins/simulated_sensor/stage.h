@@ -13,7 +13,7 @@
 namespace toile::simulated_sensor {
 
 /// Fine structure of a surface's colour, made up from where a point lies at rest.
-enum class Grain : std::uint8_t { invalid, plain, skin, cloth, hair, boards, plaster };
+enum class Grain : std::uint8_t { invalid, plain, skin, cloth, hair, boards, plaster, print };
 
 struct SurfaceLook {
     Vec3f albedo = Vec3f::Constant(0.5f);          ///< linear; multiplies the texture

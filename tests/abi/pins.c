@@ -452,6 +452,17 @@ AT(toile_scan_template, instant, 4);
 AT(toile_scan_template, surface, 8);
 AT(toile_scan_template, part_labels, 144);
 
+SIZE(toile_part_picture, 56);
+AT(toile_part_picture, size, 0);
+AT(toile_part_picture, reserved, 4);
+AT(toile_part_picture, parts, 8);
+AT(toile_part_picture, people, 32);
+
+SIZE(toile_part_labels, 16);
+AT(toile_part_labels, size, 0);
+AT(toile_part_labels, reserved, 4);
+AT(toile_part_labels, labels, 8);
+
 SIZE(toile_scan_guide, 16);
 AT(toile_scan_guide, size, 0);
 AT(toile_scan_guide, reserved, 4);

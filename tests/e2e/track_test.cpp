@@ -2,6 +2,7 @@
 #include "body/track_file.h"
 #include "core/bytes.h"
 #include "core/json.h"
+#include "imaging/indexed_image.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
 
@@ -75,12 +76,48 @@ TEST_F(TrackTest, FollowsSomebodyAsTheTruthHasIt) {
     EXPECT_TRUE(fs::exists(folder_ / "pictures" / "000023.png"));
 }
 
-TEST_F(TrackTest, TheSameBytesTwiceWithOneAndTwoThreads) {
+/// A recording with colour, so that all of tracking takes part.
+TEST_F(TrackTest, TheSameBytesEveryTimeWithOneAndTwoThreads) {
     write(kTurning);
-    ASSERT_EQ(track(simulated(), "one.jsonl", {"--threads", "1"}).status, 0);
-    ASSERT_EQ(track(simulated(), "two.jsonl", {"--threads", "2"}).status, 0);
-    EXPECT_EQ(read_bytes(folder_ / "one.jsonl", 16u << 20),
-              read_bytes(folder_ / "two.jsonl", 16u << 20));
+    ASSERT_EQ(
+        run_toile({"record", "--source", simulated(), "--out", at("capture"), "--no-surfaces"})
+            .status,
+        0);
+    const std::string capture = "capture:" + at("capture");
+    std::vector<std::uint8_t> first;
+    for (const char* threads : {"1", "2", "2"}) {
+        ASSERT_EQ(track(capture, "track.jsonl", {"--threads", threads}).status, 0);
+        const auto bytes = read_bytes(folder_ / "track.jsonl", 16u << 20);
+        if (first.empty()) first = bytes;
+        EXPECT_EQ(bytes, first) << threads << " threads";
+    }
+    EXPECT_FALSE(first.empty());
+}
+
+TEST_F(TrackTest, LabelsTellThePartOfEachPixel) {
+    write(kTurning);
+    const auto run = track(simulated(), "track.jsonl", {"--labels", at("labels"), "--frames", "8"});
+    ASSERT_EQ(run.status, 0) << run.output;
+    const nlohmann::json json = parse_json_file(folder_ / "labels" / "labels.json");
+    ASSERT_EQ(json.at("parts").size(), 12u);
+    EXPECT_EQ(json.at("parts")[0].at("name"), "head");
+    const auto image = imaging::load_indexed(folder_ / "labels" / "000007.png");
+    ASSERT_EQ(image.values.size(), std::size_t{640} * 480);
+    std::array<std::size_t, 13> count{};
+    for (const std::uint8_t value : image.values) {
+        ASSERT_LE(value, 12);
+        ++count[value];
+    }
+    for (std::size_t part = 1; part < count.size(); ++part)
+        EXPECT_GT(count[part], 20u) << "part " << part;
+    EXPECT_FALSE(fs::exists(folder_ / "labels" / "000008.png"));
+    // The same track as without: asking for labels changes nothing.
+    ASSERT_EQ(track(simulated(), "plain.jsonl", {"--frames", "8"}).status, 0);
+    EXPECT_EQ(read_bytes(folder_ / "plain.jsonl", 16u << 20),
+              read_bytes(folder_ / "track.jsonl", 16u << 20));
+    const auto unwritable = track(simulated(), "t.jsonl", {"--labels", "/proc/no/labels"});
+    EXPECT_EQ(unwritable.status, 1);
+    EXPECT_THAT(unwritable.output, HasSubstr("/proc/no/labels"));
 }
 
 TEST_F(TrackTest, AMirrorDressesWhoStandsBeforeTheCamera) {

@@ -94,14 +94,19 @@ float roll_between(const body::JointTransforms& a, const body::JointTransforms& 
     const Vec3f bone_a = (place * (a[c].translation - a[j].translation)).normalized();
     const Vec3f bone_b = (b[c].translation - b[j].translation).normalized();
     const Quatf turned = body::swing(bone_a, bone_b) * place * a[j].rotation;
-    return std::abs(body::rotation_vector(b[j].rotation * turned.conjugate()).dot(bone_b));
+    return body::rotation_vector(b[j].rotation * turned.conjugate()).dot(bone_b);
 }
 
-/// How far the next joint is bent, radians.
-float bend_of(const body::JointTransforms& joints, Joint child) {
-    const auto c = static_cast<std::size_t>(child);
-    const auto p = static_cast<std::size_t>(*body::joint_parent(child));
-    return body::rotation_vector(joints[p].rotation.conjugate() * joints[c].rotation).norm();
+Joint child_of(Joint joint);
+
+/// How far the next joint is bent: between the two bones, radians.
+float bend_of(const body::JointTransforms& joints, Joint joint) {
+    const Joint child = child_of(joint), end = child_of(child);
+    const auto place = [&](Joint j) -> const Vec3f& {
+        return joints[static_cast<std::size_t>(j)].translation;
+    };
+    const Vec3f one = place(child) - place(joint), other = place(end) - place(child);
+    return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
 Joint child_of(Joint joint) {
@@ -112,8 +117,16 @@ Joint child_of(Joint joint) {
         return Joint::right_lower_arm;
     case Joint::left_upper_leg:
         return Joint::left_lower_leg;
-    default:
+    case Joint::right_upper_leg:
         return Joint::right_lower_leg;
+    case Joint::left_lower_arm:
+        return Joint::left_hand;
+    case Joint::right_lower_arm:
+        return Joint::right_hand;
+    case Joint::left_lower_leg:
+        return Joint::left_foot;
+    default:
+        return Joint::right_foot;
     }
 }
 
@@ -175,7 +188,13 @@ void TrackSums::add(const TrackSums& o) {
     good_frames += o.good_frames, failed_frames += o.failed_frames;
     swapped += o.swapped, flagged += o.flagged, alarms += o.alarms;
     for (std::size_t b = 0; b < 2; ++b)
-        roll[b] += o.roll[b], roll_count[b] += o.roll_count[b];
+        roll[b] += o.roll[b], roll_count[b] += o.roll_count[b], wander[b] += o.wander[b];
+    for (std::size_t l = 0; l < marks.size(); ++l)
+        for (std::size_t k = 0; k < 2; ++k)
+            limb_off[l][k] += o.limb_off[l][k], limb_seen[l][k] += o.limb_seen[l][k],
+                marks[l][k] += o.marks[l][k];
+    labelled += o.labelled, labels_right += o.labels_right, unlabelled += o.unlabelled;
+    labels_beside += o.labels_beside;
     for (std::size_t t = 0; t < stated.size(); ++t)
         stated[t] += o.stated[t], kept[t] += o.kept[t];
     longest_swap = std::max(longest_swap, o.longest_swap);
@@ -183,6 +202,21 @@ void TrackSums::add(const TrackSums& o) {
         joint[j] += o.joint[j], joint_count[j] += o.joint_count[j], off[j] += o.off[j],
             lean[j] += o.lean[j];
     ms.insert(ms.end(), o.ms.begin(), o.ms.end());
+}
+
+void TrackSums::end_case() {
+    for (std::size_t b = 0; b < 2; ++b)
+        for (const auto& [count, sum, squares] : {limb[0][b], limb[1][b], limb[2][b], limb[3][b]})
+            if (count > 0.0) wander[b] += squares - sum * sum / count;
+}
+
+double TrackSums::limb_roll(std::size_t first, std::size_t bent) const {
+    return (limb_off[first][bent] + limb_off[first + 1][bent]) /
+           static_cast<double>(std::max<std::size_t>(1, limb_count(first, bent)));
+}
+
+std::size_t TrackSums::limb_count(std::size_t first, std::size_t bent) const {
+    return limb_seen[first][bent] + limb_seen[first + 1][bent];
 }
 
 double percent(std::size_t a, std::size_t b) {
@@ -208,6 +242,26 @@ void print(const std::string& name, TrackSums& s) {
     const auto roll = [&](std::size_t bent) {
         return s.roll[bent] / static_cast<double>(std::max<std::size_t>(1, s.roll_count[bent]));
     };
+    const auto wander = [&](std::size_t bent) {
+        return std::sqrt(s.wander[bent] /
+                         static_cast<double>(std::max<std::size_t>(1, s.roll_count[bent])));
+    };
+    const auto marks = [&](std::size_t a, std::size_t k) {
+        return static_cast<double>(s.marks[a][k] + s.marks[a + 1][k]) /
+               static_cast<double>(std::max<std::size_t>(1, s.frames));
+    };
+    std::printf("    roll wanders: bent %.1f, straight %.1f degrees; marks a frame sought / found: "
+                "upper arms %.1f / %.1f, thighs %.1f / %.1f\n",
+                wander(1), wander(0), marks(0, 0), marks(0, 1), marks(2, 0), marks(2, 1));
+    for (std::size_t b = 0; b < 2; ++b)
+        std::printf("    roll %s: upper arms %.1f (%zu), thighs %.1f (%zu) degrees\n",
+                    b == 0 ? "straight" : "bent", s.limb_roll(0, b), s.limb_count(0, b),
+                    s.limb_roll(2, b), s.limb_count(2, b));
+    if (s.labelled > 0)
+        std::printf("    labels: %.1f %% of the person's pixels right, %.1f %% without one, "
+                    "%.2f %% of the labels beside the person\n",
+                    percent(s.labels_right, s.labelled), percent(s.unlabelled, s.labelled),
+                    percent(s.labels_beside, s.labelled));
     std::printf(
         "    roll: bent %.1f, straight %.1f degrees; failed frames flagged %zu of %zu, false "
         "alarms %.1f %%\n",
@@ -235,13 +289,22 @@ void add_roll(const sensor::Simulator& simulator, const body::JointTransforms& t
               const body_tracker::PersonTrack& person, const std::array<float, kJointCount>& shares,
               TrackSums& sums) {
     const Quatf place(simulator.camera(0).reported_pose().linear().cast<float>());
-    for (const Joint joint : kRolled) {
+    for (std::size_t limb = 0; limb < kRolled.size(); ++limb) {
+        const Joint joint = kRolled[limb];
+        const auto& counts = person.marks().counts();
+        sums.marks[limb][0] += counts.sought[static_cast<std::size_t>(joint)];
+        sums.marks[limb][1] += counts.found[static_cast<std::size_t>(joint)];
         if (shares[static_cast<std::size_t>(joint)] < kVisibleShare) continue;
         const Joint child = child_of(joint);
-        const std::size_t bent = bend_of(truth, child) > kBent ? 1 : 0;
-        sums.roll[bent] += static_cast<double>(
+        const std::size_t bent = bend_of(truth, joint) > kBent ? 1 : 0;
+        const double off = static_cast<double>(
             roll_between(person.joints(), truth, joint, child, place) * 180.0f / body::kPi);
+        sums.roll[bent] += std::abs(off);
         ++sums.roll_count[bent];
+        sums.limb_off[limb][bent] += std::abs(off);
+        ++sums.limb_seen[limb][bent];
+        auto& [count, sum, squares] = sums.limb[limb][bent];
+        count += 1.0, sum += off, squares += off * off;
     }
 }
 
@@ -304,6 +367,33 @@ FrameErrors compare(const sensor::Simulator& simulator, std::size_t figure,
     sums.alarms += out.good && !out.called_tracked ? 1 : 0;
     if (called) add_roll(simulator, truth, person, shares, sums);
     return out;
+}
+
+void rate_labels(const sensor::Simulator& simulator, const body_tracker::BodyTracking& tracking,
+                 const body::TestPerson& person, body_tracker::PartPainter& painter,
+                 TrackSums& sums) {
+    const sensor::DepthCamera& camera = simulator.camera(0);
+    const std::vector<float>& metres = camera.depth().metres;
+    std::vector<std::uint8_t> parts(metres.size());
+    painter.paint(tracking, metres, parts, {});
+    const sensor::HitMap& hits = camera.hits();
+    for (std::size_t i = 0; i < metres.size(); ++i) {
+        if (!(metres[i] > 0.0f)) continue;
+        const bool on_person =
+            hits.depth[i] < 100.0f && simulator.stage().surface(hits.surface[i]).name == person.id;
+        if (!on_person || std::abs(hits.depth[i] - metres[i]) > kSeenTolerance) {
+            // A reading off what the ray hit is of an outline: whose is not known.
+            if (!on_person && parts[i] != 0 && std::abs(hits.depth[i] - metres[i]) < kSeenTolerance)
+                ++sums.labels_beside;
+            continue;
+        }
+        const Triangle& t = person.rest.triangles[hits.triangle[i]];
+        const auto& [v, w] = hits.place[i];
+        const std::size_t corner = v > w ? (v > 1.0f - v - w ? 1 : 0) : (w > 1.0f - v - w ? 2 : 0);
+        ++sums.labelled;
+        sums.unlabelled += parts[i] == 0 ? 1 : 0;
+        sums.labels_right += parts[i] == static_cast<std::uint8_t>(person.parts[t[corner]]) ? 1 : 0;
+    }
 }
 
 /// A walk through random poses within the joints' limits, as a track file.

@@ -4,6 +4,7 @@
 #include "body/fit_model.h"
 #include "body/test_person.h"
 #include "body_tracker/body_tracking.h"
+#include "body_tracker/part_painter.h"
 #include "simulated_sensor/simulator.h"
 
 #include <filesystem>
@@ -52,6 +53,18 @@ struct TrackSums {
     /// Degrees about the bone of upper arms and thighs (visible): [elbow or knee bent].
     std::array<double, 2> roll{};
     std::array<std::size_t, 2> roll_count{};
+    /// The same without each limb's mean over a case: how far roll wanders, root of mean squares.
+    std::array<double, 2> wander{};
+    std::array<std::array<std::array<double, 3>, 2>, 4> limb{}; ///< count, sum, sum of squares
+    std::array<std::array<std::size_t, 2>, 4> marks{}; ///< sought and found again, of kRolled
+    std::array<std::array<double, 2>, 4> limb_off{}; ///< degrees, of kRolled: [elbow or knee bent]
+    std::array<std::array<std::size_t, 2>, 4> limb_seen{};
+    /// Of a pair of kRolled that begins with `first`.
+    [[nodiscard]] double limb_roll(std::size_t first, std::size_t bent) const;
+    [[nodiscard]] std::size_t limb_count(std::size_t first, std::size_t bent) const;
+    /// Pixels that truly show the person, those labelled rightly and not at all; labels elsewhere.
+    std::size_t labelled = 0, labels_right = 0, unlabelled = 0, labels_beside = 0;
+    void end_case();
     /// By tenths of the stated confidence: joints, and how many of them are within 10 cm.
     std::array<std::size_t, 10> stated{}, kept{};
     std::vector<double> ms;
@@ -68,6 +81,11 @@ struct FrameErrors {
 FrameErrors compare(const simulated_sensor::Simulator& simulator, std::size_t figure,
                     const body_tracker::PersonTrack& person, const Visibility& visibility,
                     TrackSums& sums);
+
+/// Compares the parts of pixels with those that rays hit; adds to `sums`.
+void rate_labels(const simulated_sensor::Simulator& simulator,
+                 const body_tracker::BodyTracking& tracking, const body::TestPerson& person,
+                 body_tracker::PartPainter& painter, TrackSums& sums);
 
 /// Are hips and shoulders nearer to the truth with left and right exchanged?
 [[nodiscard]] bool swapped(const simulated_sensor::Simulator& simulator,

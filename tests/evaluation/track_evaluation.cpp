@@ -1,12 +1,13 @@
 // Follows test people seen by one simulated camera and compares the joints with the true ones.
 //
 //     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --motions DIR [--count N] [--seconds S]
-//         [--noise usual|full] [--clutter] [--pictures DIR]
+//         [--noise usual|full] [--clutter] [--pictures DIR] [--colour [--suit]] [--labels]
 //     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --write-motions DIR
 //     track_evaluation MODEL_FOLDER PEOPLE_FOLDER --dressed CASES_FOLDER
 //
-// `--write-motions` leaves the motions of its own for each person, to dress people in them
-// (scripts/track-accuracy); `--dressed` follows what that made: surface caches
+// `--colour`: twice on the same frames, without and with the colour picture. `--suit`: people wear
+// a printed sports suit. `--write-motions` leaves the motions of its own for each person, to dress
+// people in them (scripts/track-accuracy); `--dressed` follows what that made: surface caches
 // CASES/PERSON--MOTION.
 #include "body/joint_limits.h"
 #include "body/motion.h"
@@ -15,6 +16,7 @@
 #include "body/track_file.h"
 #include "body/usual_poses.h"
 #include "body_tracker/body_tracking.h"
+#include "body_tracker/part_painter.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "evaluation/simulated_views.h"
@@ -46,7 +48,9 @@ struct Settings {
     std::size_t count = 1000, first = 0;
     double seconds = 8.0;
     std::string noise = "usual", only;
-    bool learn_shape = true, smooth = true, clutter = false, frames = false;
+    bool learn_shape = true, smooth = true, clutter = false, colour = false, suit = false;
+    bool labels = false, frames = false;
+    float colour_weight = 1.0f;
     std::uint64_t seed = 5;
     int picture_every = 15;
 };
@@ -185,11 +189,13 @@ class Evaluation {
     }
 
     /// \param folder of the test person, who wears clothes when the case is of dressed people
-    TrackSums run(const fs::path& folder, const body::TestPerson& person, const Case& one,
-                  std::uint64_t seed) {
+    /// \return one, or with colour two: without and with it
+    std::vector<TrackSums> run(const fs::path& folder, const body::TestPerson& person,
+                               const Case& one, std::uint64_t seed) {
         toile::Random random(seed);
         sensor::Scenario scenario = toile::evaluation::empty_room();
         scenario.seed = seed;
+        scenario.color = settings_.colour;
         scenario.frames_per_second = kTrackRate;
         const Subject subject = subject_of(folder, person, one);
         scenario.frames = static_cast<std::uint32_t>(
@@ -198,6 +204,7 @@ class Evaluation {
         who.kind = subject.kind;
         who.source = subject.source;
         if (who.kind == sensor::BodyKind::test_person) who.motion = one.motion;
+        who.suit = settings_.suit && who.kind == sensor::BodyKind::test_person;
         who.position = Vec3f(-subject.middle.x(), 0.0f, -subject.middle.z());
         who.turn = one.turn + random.uniform(-0.5, 0.5);
         who.turntable_s = one.turntable_s;
@@ -216,29 +223,44 @@ class Evaluation {
         options.person.learn_shape = settings_.learn_shape;
         options.person.smoothing.on = settings_.smooth;
         options.person.forest = forest_;
-        tracker::BodyTracking tracking(model_, simulator.camera(0).intrinsics(),
-                                       simulator.camera(0).reported_pose(), options);
-        TrackSums sums;
-        std::size_t swaps = 0;
+        std::vector<std::unique_ptr<tracker::BodyTracking>> ways;
+        for (std::size_t w = 0; w < (settings_.colour ? 2U : 1U); ++w) {
+            options.person.marks.weight = w == 0 ? 0.0f : settings_.colour_weight;
+            ways.push_back(std::make_unique<tracker::BodyTracking>(
+                model_, simulator.camera(0).intrinsics(), simulator.camera(0).reported_pose(),
+                options));
+        }
+        std::vector<TrackSums> sums(ways.size());
+        std::vector<std::size_t> swaps(ways.size(), 0);
+        tracker::PartPainter painter(ways.back()->people()[0]->body(), forest_.get(),
+                                     simulator.camera(0).intrinsics());
         for (std::uint32_t f = 0; f < scenario.frames; ++f) {
             simulator.show(f);
             simulator.see(0);
-            const double began = cpu_ms();
-            tracking.update(simulator.camera(0).depth().metres.data(),
-                            static_cast<std::int64_t>(1e9 * scenario.time_of(f)));
-            sums.ms.push_back(cpu_ms() - began);
-            const FrameErrors errors =
-                compare(simulator, 0, *tracking.people()[0], subject.visibility, sums);
-            if (settings_.frames) list(f, errors, *tracking.people()[0]);
-            swaps = swapped(simulator, *tracking.people()[0]) ? swaps + 1 : 0;
-            sums.swapped += swaps > 0 ? 1 : 0;
-            sums.longest_swap = std::max(sums.longest_swap, swaps);
+            const auto* colour = settings_.colour ? simulator.picture(0).pixels.data() : nullptr;
+            for (std::size_t w = 0; w < ways.size(); ++w) {
+                const double began = cpu_ms();
+                ways[w]->update(simulator.camera(0).depth().metres.data(),
+                                static_cast<std::int64_t>(1e9 * scenario.time_of(f)), colour);
+                sums[w].ms.push_back(cpu_ms() - began);
+                const tracker::PersonTrack& track = *ways[w]->people()[0];
+                const FrameErrors errors =
+                    compare(simulator, 0, track, subject.visibility, sums[w]);
+                if (settings_.frames) list(f, errors, track);
+                swaps[w] = swapped(simulator, track) ? swaps[w] + 1 : 0;
+                sums[w].swapped += swaps[w] > 0 ? 1 : 0;
+                sums[w].longest_swap = std::max(sums[w].longest_swap, swaps[w]);
+            }
+            if (settings_.labels)
+                rate_labels(simulator, *ways.back(), person, painter, sums.back());
             if (!settings_.pictures.empty() &&
                 f % static_cast<std::uint32_t>(settings_.picture_every) == 0)
-                save_picture(tracking,
+                save_picture(*ways.back(),
                              settings_.pictures / (one.name + "_" + std::to_string(seed) + "_" +
                                                    std::to_string(1000 + f) + ".png"));
         }
+        for (TrackSums& one_way : sums)
+            one_way.end_case();
         return sums;
     }
 
@@ -273,6 +295,26 @@ class Evaluation {
     std::shared_ptr<const tracker::Forest> forest_;
 };
 
+constexpr std::array kWays{"", " with colour"};
+
+void print_all(const std::string& name, TrackSums& sums) {
+    if (sums.frames == 0) return;
+    print(name, sums);
+    std::printf("  stated confidence: share of joints within 10 cm (joints)\n");
+    for (std::size_t t = 0; t < sums.stated.size(); ++t)
+        std::printf("  %.1f  %5.1f %% (%zu)\n", 0.1 * static_cast<double>(t),
+                    percent(sums.kept[t], sums.stated[t]), sums.stated[t]);
+    for (std::size_t j = 0; j < kJointCount; ++j)
+        std::printf(
+            "  %-16s %5.1f mm, seen and beyond 10 cm in %4.1f %% of the frames; "
+            "mean right %.0f, up %.0f, to the camera %.0f mm\n",
+            std::string(body::joint_name(static_cast<Joint>(j))).c_str(),
+            sums.joint[j] / static_cast<double>(std::max<std::size_t>(1, sums.joint_count[j])),
+            percent(sums.off[j], sums.frames), sums.lean[j].x() / static_cast<double>(sums.frames),
+            sums.lean[j].y() / static_cast<double>(sums.frames),
+            sums.lean[j].z() / static_cast<double>(sums.frames));
+}
+
 void run(const Settings& settings) {
     Evaluation evaluation(settings);
     std::vector<fs::path> people;
@@ -283,7 +325,7 @@ void run(const Settings& settings) {
     if (!settings.motions.empty())
         for (const char* name : {"02_01.bvh", "Boxing_Toes.bvh"})
             motions.push_back(settings.motions / name);
-    TrackSums all;
+    std::vector<TrackSums> all(settings.colour ? 2 : 1);
     std::size_t done = 0;
     for (std::size_t n = settings.first; n < people.size() && done < settings.count; ++n, ++done) {
         const body::TestPerson person = body::load_test_person(people[n]);
@@ -313,28 +355,17 @@ void run(const Settings& settings) {
             cases.push_back({"away", cases.front().motion, 0.0, std::numbers::pi});
         for (const Case& one : cases) {
             if (!settings.only.empty() && one.name != settings.only) continue;
-            TrackSums sums = evaluation.run(people[n], person, one, settings.seed + n);
-            print(person.id + " " + one.name, sums);
-            all.add(sums);
+            std::vector<TrackSums> sums = evaluation.run(people[n], person, one, settings.seed + n);
+            for (std::size_t w = 0; w < sums.size(); ++w) {
+                print(person.id + " " + one.name + kWays[w], sums[w]);
+                all[w].add(sums[w]);
+            }
         }
         fs::remove(walk);
         fs::remove(standing);
     }
-    if (all.frames == 0) return;
-    print("all", all);
-    std::printf("  stated confidence: share of joints within 10 cm (joints)\n");
-    for (std::size_t t = 0; t < all.stated.size(); ++t)
-        std::printf("  %.1f  %5.1f %% (%zu)\n", 0.1 * static_cast<double>(t),
-                    percent(all.kept[t], all.stated[t]), all.stated[t]);
-    for (std::size_t j = 0; j < kJointCount; ++j)
-        std::printf(
-            "  %-16s %5.1f mm, seen and beyond 10 cm in %4.1f %% of the frames; "
-            "mean right %.0f, up %.0f, to the camera %.0f mm\n",
-            std::string(body::joint_name(static_cast<Joint>(j))).c_str(),
-            all.joint[j] / static_cast<double>(std::max<std::size_t>(1, all.joint_count[j])),
-            percent(all.off[j], all.frames), all.lean[j].x() / static_cast<double>(all.frames),
-            all.lean[j].y() / static_cast<double>(all.frames),
-            all.lean[j].z() / static_cast<double>(all.frames));
+    for (std::size_t w = 0; w < all.size(); ++w)
+        print_all(std::string("all") + kWays[w], all[w]);
 }
 
 } // namespace
@@ -358,6 +389,10 @@ int main(int argc, char** argv) {
     app.add_flag("--frames", settings.frames, "each frame's joints that are seen and 10 cm off");
     app.add_option("--pictures", settings.pictures);
     app.add_option("--picture-every", settings.picture_every);
+    app.add_flag("--colour", settings.colour, "without and with the colour picture");
+    app.add_option("--colour-weight", settings.colour_weight);
+    app.add_flag("--labels", settings.labels, "the part of each pixel (undressed people only)");
+    app.add_flag("--suit", settings.suit, "a printed sports suit on undressed people");
     app.add_flag("!--no-shape", settings.learn_shape);
     app.add_flag("!--no-smoothing", settings.smooth);
     CLI11_PARSE(app, argc, argv);

@@ -2,6 +2,7 @@
 
 #include "core/bytes.h"
 #include "core/random.h"
+#include "imaging/indexed_image.h"
 #include "support/temporary_folder.h"
 #include "support/throws.h"
 
@@ -111,6 +112,25 @@ TEST(Refusals, BrokenFiles) {
     EXPECT_ERROR((void)decode_image(jpeg, "x.jpg"), "x.jpg: not a good JPEG");
     EXPECT_ERROR(save_image(noise(4, 4, 7), folder / "a.tiff"), ".png or .jpg");
     EXPECT_ERROR(save_image(Image{4, 4, {}}, folder / "a.png"), "incomplete");
+}
+
+TEST(Image, IndexedPicturesKeepTheirValues) {
+    const test::TemporaryFolder folder;
+    IndexedImage image{3, 2, {0, 1, 2, 2, 1, 0}, {{0, 0, 0}, {255, 10, 20}, {30, 40, 250}}};
+    save_indexed(image, folder / "parts.png");
+    const IndexedImage read = load_indexed(folder / "parts.png");
+    EXPECT_EQ(read.width, 3);
+    EXPECT_EQ(read.height, 2);
+    EXPECT_EQ(read.values, image.values);
+    // Any viewer sees the colours.
+    const Image seen = load_image(folder / "parts.png");
+    EXPECT_EQ(seen.pixels[4], 255);
+    EXPECT_EQ(seen.pixels[5], 10);
+    EXPECT_EQ(seen.pixels[4 * 2 + 2], 250);
+    image.values[0] = 3;
+    EXPECT_THROW(save_indexed(image, folder / "parts.png"), Error);
+    save_image(seen, folder / "colors.png");
+    EXPECT_THROW((void)load_indexed(folder / "colors.png"), Error);
 }
 
 } // namespace
