@@ -164,6 +164,18 @@ void feeds_one(Bench& bench, const std::vector<float>& depth, std::uint32_t sequ
     bench.ok("feed", [&](auto* i) { return bench.table<toile_body_source>().feed(i, &input); });
 }
 
+void begin_with_small_camera(Bench& bench) {
+    const auto& table = bench.table<toile_body_source>();
+    const toile_stream stream = small_camera();
+    auto setup = sized<toile_body_source_setup>();
+    setup.uri = "";
+    setup.stream_count = 1;
+    setup.streams = &stream;
+    setup.max_people = 2;
+    Job job;
+    bench.ok("begin", [&](auto* i) { return table.begin(i, &setup, job.handle()); });
+}
+
 void survives_broken_pictures(const PluginPtr& plugin) {
     Bench bench(plugin);
     if (describe(bench).input != TOILE_SOURCE_FRAMES) return;
@@ -176,14 +188,7 @@ void survives_broken_pictures(const PluginPtr& plugin) {
     input.frame_count = 1;
     input.frames = &frame;
     bench.fails("feed", "before begin", [&](auto* i) { return table.feed(i, &input); });
-    const toile_stream stream = small_camera();
-    auto setup = sized<toile_body_source_setup>();
-    setup.uri = "";
-    setup.stream_count = 1;
-    setup.streams = &stream;
-    setup.max_people = 2;
-    Job job;
-    bench.ok("begin", [&](auto* i) { return table.begin(i, &setup, job.handle()); });
+    begin_with_small_camera(bench);
     frame.depth_m = view_of(short_one);
     bench.fails("feed", "with a picture of another size than announced",
                 [&](auto* i) { return table.feed(i, &input); });
@@ -222,14 +227,7 @@ void labels_pixels(const PluginPtr& plugin) {
         };
     };
     bench.fails("labels", "before begin", ask(64 * 48, 64 * 48));
-    const toile_stream stream = small_camera();
-    auto setup = sized<toile_body_source_setup>();
-    setup.uri = "";
-    setup.stream_count = 1;
-    setup.streams = &stream;
-    setup.max_people = 2;
-    Job job;
-    bench.ok("begin", [&](auto* i) { return table.begin(i, &setup, job.handle()); });
+    begin_with_small_camera(bench);
     bench.fails("labels", "into a picture of another size", ask(64 * 47, 0));
     bench.fails("labels", "with people of another size", ask(64 * 48, 64));
     std::uint32_t sequence = 0;
