@@ -219,7 +219,7 @@ class BodyTracker {
         if (told.shape == nullptr || told.version != track.shape_version()) {
             const body::ShapeVector& wanted = track.body().shape();
             told.shape = std::make_unique<toile::boundary::ShapedBody>(
-                model_->space().model(), body::rest_shape(*model_, {wanted, {}}),
+                model_->space().model(), track.body().dressed(),
                 std::span(wanted.data(), static_cast<std::size_t>(wanted.size())),
                 body::Measurements{}, ++revision_);
             told.version = track.shape_version();

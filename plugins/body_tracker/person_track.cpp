@@ -88,14 +88,9 @@ PersonTrack::PersonTrack(const body::FitModel& model, const GridCamera& camera,
       registration_(body_, camera), search_(body_, parts_, camera), marks_(body_, options.marks),
       smoother_(options.smoothing), mask_(camera) {
     const body::FitLevel& level = body_.level();
-    for (const Triangle& t : level.triangles) {
-        std::array<float, kJointCount> weight{};
-        for (const std::uint32_t v : t)
-            for (std::size_t k = 0; k < 4; ++k)
-                weight[level.skin.joints[v][k]] += level.skin.weights[v][k];
-        const auto joint = std::max_element(weight.begin(), weight.end()) - weight.begin();
-        leader_.push_back(static_cast<std::uint8_t>(joint));
-        part_area_[static_cast<std::size_t>(joint)] +=
+    for (std::size_t n = 0; n < level.triangles.size(); ++n) {
+        const Triangle& t = level.triangles[n];
+        part_area_[static_cast<std::size_t>(body_.leader(static_cast<std::int32_t>(n)))] +=
             0.5f *
             (level.mean[t[1]] - level.mean[t[0]]).cross(level.mean[t[2]] - level.mean[t[0]]).norm();
     }
@@ -313,12 +308,13 @@ void PersonTrack::settle(const SeenPerson& seen, float dt) noexcept {
         whole_ = true;
         learner_.reset(); // what was learned of a part of the person says little
     }
-    if (options_.learn_shape && sure_ && !learner_.done() && agreement_.unexplained < kLearnBelow) {
-        learner_.add(registration_, seen, options_.registration, body_.shape());
+    if (options_.learn_shape && sure_ && agreement_.unexplained < kLearnBelow && learner_.wants()) {
+        learner_.add(registration_, seen, options_.registration, body_.shape(), body_.wear());
         if (learner_.due()) {
             body::ShapeVector shape = body_.shape();
-            learner_.solve(shape);
-            body_.set_shape(shape);
+            Wear wear{};
+            learner_.solve(shape, wear);
+            body_.set_shape(shape, wear);
             ++shape_version_;
             agreement_ = registration_.judge(seen, pose_);
         }
@@ -361,7 +357,8 @@ void PersonTrack::rate_joints(const SeenPerson& seen) noexcept {
         const Vec3f& p = posed.positions[body_.level().triangles[t][0]];
         const float facing = -posed.normals[body_.level().triangles[t][0]].dot(p) / p.norm();
         const float width = seen.grid.camera.footprint(cell.depth);
-        area[leader_[t]] += width * width / std::max(0.3f, facing);
+        area[static_cast<std::size_t>(body_.leader(cell.triangle))] +=
+            width * width / std::max(0.3f, facing);
     }
     const float trust =
         1.0f - std::min(1.0f, agreement_.unexplained / (2.0f * options_.failed_share));

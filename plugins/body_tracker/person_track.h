@@ -118,7 +118,6 @@ class PersonTrack {
     std::array<Vec3f, body::kJointCount> velocity_{}, turning_{};
     std::array<float, body::kJointCount> confidence_{};
     std::array<float, body::kJointCount> part_area_{}; ///< m^2 of the skin that each joint leads
-    std::vector<std::uint8_t> leader_;                 ///< (triangles) joint that leads each
 };
 
 } // namespace toile::body_tracker

@@ -84,8 +84,8 @@ class Registration {
     /// Is the cell the person's, and not where that body is drawn, give or take a cell?
     [[nodiscard]] bool lacks_body(const SeenPerson& seen, int x, int y) const noexcept;
 
-    /// Normal matrix and gradient of shape and pose around the last judged pose, data only:
-    /// (shapes + 69). `shapes`: so many of the first coefficients. Allocates.
+    /// Normal matrix and gradient of shape, wear and pose around the last judged pose, data only:
+    /// (shapes + kWearCount + 69). `shapes`: so many of the first coefficients. Allocates.
     void linearise_shape(const SeenPerson& seen, const RegistrationOptions& options, int shapes,
                          Eigen::MatrixXd& normal, Eigen::VectorXd& gradient);
 
@@ -121,6 +121,7 @@ class Registration {
                     float weight) noexcept;
     void add_motion(const MotionPrior& motion, const body::Pose& pose) noexcept;
     [[nodiscard]] Eigen::MatrixXf joint_moves(int shapes) const;
+    [[nodiscard]] Eigen::Vector<float, kWearCount> wear_motion(const Row& row) const;
     [[nodiscard]] Eigen::VectorXf shape_motion(const Row& row, const Eigen::MatrixXf& joints) const;
     void find_visible(const SeenPerson& seen) noexcept;
 

@@ -22,16 +22,17 @@ void Registration::linearise_shape(const SeenPerson& seen, const RegistrationOpt
     add_soles(seen, options);
     recording_ = false;
     const Eigen::MatrixXf joints = joint_moves(shapes);
-    const int size = shapes + body::kPoseUnknowns;
+    const int surface = shapes + kWearCount, size = surface + body::kPoseUnknowns;
     Eigen::MatrixXf sums = Eigen::MatrixXf::Zero(size + 1, size + 1);
     Eigen::VectorXf line(size + 1);
     for (const Row& row : rows_) {
         line.setZero();
         line.head(shapes) = shape_motion(row, joints);
+        line.segment<kWearCount>(shapes) = wear_motion(row);
         PlaceMotion motion;
         body_.motion(posed_, row.triangle, row.weights, row.at, row.along, motion);
         for (std::size_t k = 0; k < static_cast<std::size_t>(motion.count); ++k)
-            line.segment<3>(shapes + motion.start[k]) = motion.block[k];
+            line.segment<3>(surface + motion.start[k]) = motion.block[k];
         line[size] = row.residual;
         sums.selfadjointView<Eigen::Lower>().rankUpdate(line, row.weight);
     }
@@ -80,6 +81,21 @@ Eigen::VectorXf Registration::shape_motion(const Row& row, const Eigen::MatrixXf
         }
     }
     return out.transpose();
+}
+
+/// And with each part of what is worn.
+Eigen::Vector<float, kWearCount> Registration::wear_motion(const Row& row) const {
+    Eigen::Vector<float, kWearCount> out = Eigen::Vector<float, kWearCount>::Zero();
+    const body::FitLevel& level = body_.level();
+    const Triangle& corners = level.triangles[static_cast<std::size_t>(row.triangle)];
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t v = corners[c];
+        const float outwards =
+            row.weights[c] * row.along.dot(posed_.rotations[v] * level.mean_normals[v]);
+        for (int part = 0; part < kWearCount; ++part)
+            out[part] += outwards * body_.worn(v)[static_cast<std::size_t>(part)];
+    }
+    return out;
 }
 
 } // namespace toile::body_tracker

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 namespace toile::body_tracker {
 namespace {
 
+using body::Joint;
 using body::kJointCount;
 
 constexpr float kNearest = 0.2f; // metres
@@ -20,6 +23,33 @@ float cross(const Vec3f& a, const Vec3f& b, float x, float y) noexcept {
 
 } // namespace
 
+std::optional<std::size_t> wear_of(Joint joint) noexcept {
+    switch (joint) {
+    case Joint::chest:
+    case Joint::upper_chest:
+    case Joint::left_shoulder:
+    case Joint::right_shoulder:
+        return 0;
+    case Joint::hips:
+    case Joint::spine:
+        return 1;
+    case Joint::left_upper_arm:
+    case Joint::right_upper_arm:
+        return 2;
+    case Joint::left_lower_arm:
+    case Joint::right_lower_arm:
+        return 3;
+    case Joint::left_upper_leg:
+    case Joint::right_upper_leg:
+        return 4;
+    case Joint::left_lower_leg:
+    case Joint::right_lower_leg:
+        return 5;
+    default:
+        return std::nullopt;
+    }
+}
+
 TrackedBody::TrackedBody(const body::FitModel& model)
     : model_(model), level_(model.level(model.level_count() - 1)) {
     if (model.level_count() < 2) throw Error("tracking needs a body space with levels of detail");
@@ -30,21 +60,45 @@ TrackedBody::TrackedBody(const body::FitModel& model)
                 std::max({level_.below[t[0]][j], level_.below[t[1]][j], level_.below[t[2]][j]});
             if (most > kLeastShare) out.joints[out.count++] = static_cast<std::uint8_t>(j);
         }
+        std::array<float, kJointCount> weight{};
+        for (const std::uint32_t v : t)
+            for (std::size_t k = 0; k < 4; ++k)
+                weight[level_.skin.joints[v][k]] += level_.skin.weights[v][k];
+        leaders_.push_back(
+            static_cast<Joint>(std::max_element(weight.begin(), weight.end()) - weight.begin()));
     }
     corners_.assign(level_.vertices.size(), 0);
     for (std::size_t n = 0; n < level_.triangles.size(); ++n)
         for (std::size_t k = 0; k < 3; ++k)
             corners_[level_.triangles[n][k]] = static_cast<std::int32_t>(3 * n + k);
+    worn_.assign(level_.vertices.size(), Wear{});
+    for (std::size_t v = 0; v < worn_.size(); ++v)
+        for (std::size_t k = 0; k < 4; ++k)
+            if (const auto part = wear_of(static_cast<Joint>(level_.skin.joints[v][k])))
+                worn_[v][*part] += level_.skin.weights[v][k];
     set_shape(body::ShapeVector::Zero(model.component_count()));
 }
 
-void TrackedBody::set_shape(const body::ShapeVector& coefficients) {
+void TrackedBody::set_shape(const body::ShapeVector& coefficients, const Wear& wear) {
     shape_ = coefficients;
+    wear_ = wear;
     const Eigen::VectorXf moved = level_.components * shape_.cast<float>();
     rest_.resize(level_.vertices.size());
     for (std::size_t v = 0; v < rest_.size(); ++v)
-        rest_[v] = level_.mean[v] + moved.segment<3>(static_cast<int>(3 * v));
+        rest_[v] = level_.mean[v] + moved.segment<3>(static_cast<int>(3 * v)) +
+                   std::inner_product(wear.begin(), wear.end(), worn_[v].begin(), 0.0f) *
+                       level_.mean_normals[v];
     skeleton_ = model_.skeleton(shape_);
+}
+
+body::BodyShape TrackedBody::dressed() const {
+    const body::FitLevel& full = model_.level(0);
+    body::FitShape out{shape_, std::vector<float>(full.vertices.size(), 0.0f)};
+    for (std::size_t v = 0; v < full.vertices.size(); ++v)
+        for (std::size_t k = 0; k < 4; ++k)
+            if (const auto part = wear_of(static_cast<Joint>(full.skin.joints[v][k])))
+                out.offsets[full.vertices[v]] += full.skin.weights[v][k] * wear_[*part];
+    return body::rest_shape(model_, out);
 }
 
 void TrackedBody::set_stature(float stature_m) {

@@ -6,6 +6,7 @@
 #include "body_tracker/depth_grid.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace toile::body_tracker {
@@ -47,21 +48,39 @@ struct PlaceMotion {
     std::array<int, body::kJointCount + 1> start; ///< of the block among the 69 unknowns
 };
 
+/// How far clothes stand off the skin, metres: of chest, waist and seat, upper arms, lower arms,
+/// thighs, shanks.
+inline constexpr int kWearCount = 6;
+using Wear = std::array<float, kWearCount>;
+/// Which of `Wear` covers what a joint leads; none: bare.
+[[nodiscard]] std::optional<std::size_t> wear_of(body::Joint joint) noexcept;
+
 /// Shape is set now and then; posing and drawing allocate nothing once their outputs are sized.
 class TrackedBody {
   public:
     /// \throw Error when the space has no coarse level
     explicit TrackedBody(const body::FitModel& model);
 
-    void set_shape(const body::ShapeVector& coefficients);
+    /// The surface is the skin's, moved outwards by what is worn; joints are those of the skin.
+    void set_shape(const body::ShapeVector& coefficients, const Wear& wear = {});
     /// The likeliest body of a height (the smallest change of the mean one), metres.
     void set_stature(float stature_m);
     [[nodiscard]] const body::ShapeVector& shape() const noexcept { return shape_; }
+    [[nodiscard]] const Wear& wear() const noexcept { return wear_; }
+    /// How much of each of `Wear` a vertex is moved by, outwards.
+    [[nodiscard]] const Wear& worn(std::uint32_t vertex) const noexcept { return worn_[vertex]; }
+    /// The full surface with what is worn.
+    [[nodiscard]] body::BodyShape dressed() const;
     [[nodiscard]] const body::Skeleton& skeleton() const noexcept { return skeleton_; }
     [[nodiscard]] const body::FitModel& model() const noexcept { return model_; }
     [[nodiscard]] const body::FitLevel& level() const noexcept { return level_; }
     [[nodiscard]] const TriangleJoints& joints_of(std::int32_t triangle) const noexcept {
         return triangle_joints_[static_cast<std::size_t>(triangle)];
+    }
+
+    /// Whose skin a triangle is for the most part.
+    [[nodiscard]] body::Joint leader(std::int32_t triangle) const noexcept {
+        return leaders_[static_cast<std::size_t>(triangle)];
     }
 
     /// A vertex as a corner: three times a triangle that has it, plus which of its corners.
@@ -92,10 +111,13 @@ class TrackedBody {
     const body::FitModel& model_;
     const body::FitLevel& level_;
     body::ShapeVector shape_;
+    Wear wear_{};
+    std::vector<Wear> worn_; // (n)
     body::Skeleton skeleton_;
     std::vector<Vec3f> rest_; // (n)
     std::vector<TriangleJoints> triangle_joints_;
     std::vector<std::int32_t> corners_; // (n)
+    std::vector<body::Joint> leaders_;  // (triangles)
 };
 
 } // namespace toile::body_tracker

@@ -137,8 +137,16 @@ ShopperBody Tailor::body_of(const DressOrder& order) {
     file.model = order.model;
     file.made_by = "fit";
     file.coefficients = order.coefficients;
-    file.model_version = body::load_body_model(body::find_avatar(order.model)).version;
-    return {boundary(body::model_of(file)), false};
+    const std::filesystem::path folder = body::find_avatar(order.model);
+    file.model_version = body::load_body_model(folder).version;
+    body::BodyModel model = body::model_of(file);
+    if (!std::filesystem::exists(folder / "space.json")) return {boundary(std::move(model)), false};
+    // The size is that of the person, the surface that of their clothes.
+    file.detail = body::detail_of(body::BodySpace::load(folder), order.coefficients, order.surface,
+                                  order.skeleton);
+    body::BodyModel dressed = body::model_of(file);
+    dressed.measurements = std::move(model.measurements);
+    return {boundary(std::move(dressed)), false};
 }
 
 std::shared_ptr<const pipeline::BoundaryGarment>

@@ -47,6 +47,8 @@ struct DressOrder {
     ShopperBody body;                           ///< or, when it has none:
     std::string model;                          ///< the tracker's shape
     std::vector<double> coefficients;
+    std::vector<Vec3f> surface; ///< at rest: clothes are put on over what is worn
+    body::Skeleton skeleton;    ///< of it
 };
 
 /// Somebody dressed, or why not.

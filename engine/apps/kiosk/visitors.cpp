@@ -25,6 +25,8 @@ float confidence(const pipeline::BodyFrame& frame, body::Joint joint) {
 // Of what is known of somebody nothing stays in freed memory.
 void overwrite(Shopper& shopper) {
     std::fill(shopper.coefficients.begin(), shopper.coefficients.end(), 0.0);
+    std::fill(shopper.surface.begin(), shopper.surface.end(), Vec3f::Zero());
+    shopper.skeleton = {};
     shopper.frame = {};
     shopper.measurements.clear();
 }
@@ -66,9 +68,12 @@ void Visitors::see(const pipeline::PeopleFrame& frame, const Feed& feed, const V
         // Only after consent is anything of the body's shape taken over.
         const pipeline::PersonShape* shape =
             shopper->agreed ? feed.shape(frame.shapes[i]) : nullptr;
-        if (shape != nullptr) {
+        if (shape != nullptr && shape->revision != shopper->shape_revision) {
+            shopper->shape_revision = shape->revision;
             shopper->model = shape->model;
             shopper->coefficients = shape->coefficients;
+            shopper->surface = shape->rest;
+            shopper->skeleton = shape->skeleton;
         }
     }
     for (Shopper& shopper : shoppers_)
@@ -134,6 +139,8 @@ void Visitors::order(Shopper& shopper, std::size_t look, const std::vector<Artic
     order.body = shopper.body;
     order.model = shopper.model;
     order.coefficients = shopper.coefficients;
+    order.surface = shopper.surface;
+    order.skeleton = shopper.skeleton;
     tailor_.dress(std::move(order));
 }
 

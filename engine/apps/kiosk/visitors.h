@@ -34,6 +34,9 @@ struct Shopper {
     pipeline::BodyFrame frame;
     std::string model; ///< of the tracker's shape
     std::vector<double> coefficients;
+    std::uint64_t shape_revision = 0;
+    std::vector<Vec3f> surface; ///< at rest, with what they wear
+    body::Skeleton skeleton;    ///< of it
     ShopperBody body; ///< what clothes are worn on: the tracker's shape, which its joints fit
     std::map<std::string, double> measurements; ///< of the turn, for the size; or empty
     std::array<Choice, 2> wanted;               ///< of each look

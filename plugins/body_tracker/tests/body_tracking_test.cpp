@@ -72,6 +72,27 @@ TEST(BodyTracking, LearnsHowTallSomebodyIs) {
     }
 }
 
+/// Trunks of dressed people were taken to be 18 mm too near to the camera, and thick.
+TEST(BodyTracking, LearnsHowFarClothesStandOffTheBody) {
+    const body::ShapeVector mean = body::ShapeVector::Zero(adult().component_count());
+    for (const Wear& wear : {Wear{}, Wear{0.02f, 0.025f, 0.02f, 0.02f, 0.03f, 0.03f}}) {
+        DrawnRoom room;
+        BodyTracking tracking = tracking_in(room);
+        for (int f = 0; f < 150; ++f) {
+            room.clear();
+            room.add(waving(f), 0.0f, 0.2f, 0.2f * std::sin(0.05f * static_cast<float>(f)), mean,
+                     wear);
+            tracking.update(room.depth.data(), frame_time(f));
+        }
+        const PersonTrack& person = *tracking.people()[0];
+        EXPECT_LT(mean_error(person, room.people[0]), 0.025f) << wear[0];
+        EXPECT_NEAR(person.joints()[0].translation.z(), room.people[0][0].translation.z(), 0.01f)
+            << wear[0];
+        for (std::size_t part = 0; part < wear.size(); ++part)
+            EXPECT_NEAR(person.body().wear()[part], wear[part], 0.008f) << part;
+    }
+}
+
 /// Somebody tall who comes into view with the head cut off was taken to be of usual height, and
 /// learned as that.
 TEST(BodyTracking, LearnsHowTallSomebodyIsWhoCameTooNear) {

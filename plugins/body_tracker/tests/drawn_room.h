@@ -42,11 +42,12 @@ struct DrawnRoom {
     }
     /// Stands at x, z (world) with the lowest sole on the floor.
     void add(body::Pose pose, float x, float z, float yaw,
-             const body::ShapeVector& shape = body::ShapeVector::Zero(adult().component_count())) {
+             const body::ShapeVector& shape = body::ShapeVector::Zero(adult().component_count()),
+             const Wear& wear = {}) {
         pose.rotations[0] = body::about(Vec3f::UnitY(), yaw) * pose.rotations[0];
         pose.hips_position = Vec3f(x, 0.0f, z);
         body::PosedLevel posed;
-        body::pose_level(adult(), adult().level(0), {shape, {}}, pose, posed);
+        body::pose_level(adult(), adult().level(0), {shape, clothes(wear)}, pose, posed);
         float low = 1e9f;
         for (const Vec3f& p : posed.positions)
             low = std::min(low, p.y());
@@ -81,6 +82,16 @@ struct DrawnRoom {
     }
 
   private:
+    /// Along the normals of the full surface.
+    static std::vector<float> clothes(const Wear& wear) {
+        const body::FitLevel& level = adult().level(0);
+        std::vector<float> out(level.vertices.size(), 0.0f);
+        for (std::size_t v = 0; v < out.size(); ++v)
+            for (std::size_t k = 0; k < 4; ++k)
+                if (const auto part = wear_of(static_cast<body::Joint>(level.skin.joints[v][k])))
+                    out[level.vertices[v]] += level.skin.weights[v][k] * wear[*part];
+        return out;
+    }
     static const std::vector<PartLabel>& labels() {
         static const std::vector<PartLabel> all = label_vertices(adult().space().model());
         return all;

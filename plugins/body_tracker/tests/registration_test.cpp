@@ -77,6 +77,23 @@ TEST(Registration, StepsLeadBackToWhereTheBodyIs) {
     EXPECT_LT((pose.hips_position - standing().hips_position).norm(), 0.02f);
 }
 
+TEST(Registration, WhatIsWornIsToldByTheDerivative) {
+    const Wear wear{0.02f, 0.025f, 0.02f, 0.015f, 0.02f, 0.015f};
+    const SelfSeen dressed(standing(), wear);
+    const TrackedBody bare(adult());
+    Registration registration(bare, dressed.grid.camera);
+    (void)registration.judge(dressed.seen(), standing());
+    Eigen::MatrixXd normal;
+    Eigen::VectorXd gradient;
+    registration.linearise_shape(dressed.seen(), {}, 0, normal, gradient);
+    ASSERT_EQ(gradient.size(), kWearCount + body::kPoseUnknowns);
+    const Eigen::VectorXd told =
+        normal.topLeftCorner(kWearCount, kWearCount).llt().solve(-gradient.head(kWearCount));
+    for (int part = 0; part < kWearCount; ++part)
+        EXPECT_NEAR(told[part], static_cast<double>(wear[static_cast<std::size_t>(part)]), 0.006)
+            << "part " << part;
+}
+
 /// Toes and heels are cut off with the floor, and trousers hide the rest: feet once hovered 4 cm.
 TEST(Registration, FeetThatAreNotSeenStandOnTheFloor) {
     const body::Pose pose =

@@ -21,7 +21,8 @@ struct SelfSeen {
     DepthGrid grid{grid_camera(), std::vector<float>(grid_camera().size(), 0.0f)};
     PersonMask mask{grid_camera()};
 
-    explicit SelfSeen(const body::Pose& pose) {
+    explicit SelfSeen(const body::Pose& pose, const Wear& wear = {}) {
+        body.set_shape(body.shape(), wear);
         PosedBody posed = body.blank();
         Drawing drawing = body.blank_drawing(grid.camera);
         body.pose(pose, posed);
