@@ -12,6 +12,9 @@
 namespace toile::apps::kiosk {
 namespace {
 
+// Of how far worn clothes stand off the body: what is put on over them presses them together.
+constexpr float kKept = 0.5f;
+
 host::RegistryOptions plugins(const GlobalOptions& global, bool safe) {
     host::RegistryOptions out = registry_options(global);
     if (safe) {
@@ -144,6 +147,8 @@ ShopperBody Tailor::body_of(const DressOrder& order) {
     // The size is that of the person, the surface that of their clothes.
     file.detail = body::detail_of(body::BodySpace::load(folder), order.coefficients, order.surface,
                                   order.skeleton);
+    for (float& standing_off : file.detail)
+        standing_off *= kKept;
     body::BodyModel dressed = body::model_of(file);
     dressed.measurements = std::move(model.measurements);
     return {boundary(std::move(dressed)), false};

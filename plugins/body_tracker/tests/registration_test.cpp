@@ -77,6 +77,26 @@ TEST(Registration, StepsLeadBackToWhereTheBodyIs) {
     EXPECT_LT((pose.hips_position - standing().hips_position).norm(), 0.02f);
 }
 
+TEST(TrackedBody, TheSurfaceThatIsToldIsTheOneThatIsFollowed) {
+    TrackedBody body(adult());
+    body::ShapeVector shape = body.shape();
+    shape[1] = 1.5;
+    body.set_shape(shape, {0.01f, 0.02f, 0.03f, 0.04f, 0.05f, 0.06f});
+    const body::BodyShape told = body.dressed();
+    const body::BodyShape skin = body::rest_shape(adult(), {shape, {}});
+    PosedBody followed = body.blank();
+    body.pose(body::rest_pose(body.skeleton()), followed);
+    const Vec3f hips = told.skeleton.rest(body::Joint::hips);
+    float most = 0.0f;
+    for (std::size_t v = 0; v < followed.positions.size(); ++v) {
+        const std::uint32_t full = body.level().vertices[v];
+        const Vec3f at = followed.positions[v] - followed.joints[0].translation;
+        EXPECT_LT((told.positions[full] - hips - at).norm(), 1e-4f) << v;
+        most = std::max(most, (told.positions[full] - skin.positions[full]).norm());
+    }
+    EXPECT_NEAR(most, 0.06f, 0.002f);
+}
+
 TEST(Registration, WhatIsWornIsToldByTheDerivative) {
     const Wear wear{0.02f, 0.025f, 0.02f, 0.015f, 0.02f, 0.015f};
     const SelfSeen dressed(standing(), wear);
