@@ -154,6 +154,14 @@ void warn_of_guesses(const nlohmann::ordered_json& report) {
         log::warning("scan: no body could be fitted to help, so limbs that moved may be thick or "
                      "double: " +
                      report["body"]["reason"].get<std::string>());
+    constexpr double kBeside = 0.02;
+    const double beside = report.value("beside_share", 0.0);
+    if (beside <= kBeside) return;
+    const std::string what = "scan: " + std::to_string(std::lround(100.0 * beside)) +
+                             " % of what was seen lies more than 4 cm beside the fitted body: ";
+    log::warning(report.value("carried_left_out", false)
+                     ? what + "a bag or the like, it was left out and what it hid is made up"
+                     : what + "wide clothes or something carried, which may be smeared");
 }
 
 void print(const nlohmann::ordered_json& report) {

@@ -28,6 +28,10 @@ class ScanGuide {
         std::vector<SensorFrame> frames;
     };
     [[nodiscard]] std::vector<const Kept*> chosen() const;
+    [[nodiscard]] double beside_share(const FittedBody& body) const;
+    [[nodiscard]] FittedBody fitted(host::Registry& registry, host::Services& services,
+                                    const toile_limits& limits, const FittedBody* known,
+                                    float most_m, host::Job& job) const;
 
     std::vector<SensorStream> streams_;
     std::vector<Kept> kept_;

@@ -330,8 +330,12 @@ std::size_t leave_out_astray(const PartLayout& layout, const geometry::NearestSu
         for (std::size_t i = 0; i < seen.points.size(); ++i) {
             if (!(seen.points[i].x() == seen.points[i].x())) continue;
             const std::size_t group = index(layout.group(view.bindings[i]));
-            if (group <= index(BodyGroup::head)) continue;
+            if (group == index(BodyGroup::head)) continue;
             const float off = surface.nearest(seen.points[i]).distance;
+            if (group == index(BodyGroup::trunk)) {
+                if (off > options.trunk_off_m) view.bindings[i].weights[0] = 0.0f;
+                continue;
+            }
             ++count[group];
             if (off < options.near_m) ++near[group];
             if (off > options.most_off_m) view.bindings[i].weights[0] = 0.0f;

@@ -7,6 +7,8 @@
 #include "scan/registration.h"
 #include "scan/warped_view.h"
 
+#include <limits>
+
 namespace toile::scan {
 
 /// What moves as one, in the order in which it is registered.
@@ -86,10 +88,11 @@ void follow_parts(const DeformationGraph& graph, const PartLayout& layout,
                   const RowLoop& rows);
 
 /// Unbinds readings of limbs that are far from a template which elsewhere is near: those farther
-/// than `most_off_m`, and whole limbs of views of which `least_near` is not within `near_m`.
-/// Returns the number of the latter.
+/// than `most_off_m`, and whole limbs of views of which `least_near` is not within `near_m`; of the
+/// trunk those farther than `trunk_off_m`. Returns the number of whole limbs.
 struct AstrayOptions {
     float near_m = 0.015f, most_off_m = 0.03f;
+    float trunk_off_m = std::numeric_limits<float>::infinity();
     double least_near = 0.6;
 };
 std::size_t leave_out_astray(const PartLayout& layout, const geometry::NearestSurface& surface,

@@ -46,6 +46,7 @@ class WarpFusion {
     void bind_all();
     void register_parts_first(const PartStage& parts);
     void register_all(const std::function<void(double)>& progress);
+    void forget_carried();
     void take_off_bias();
     [[nodiscard]] WarpedSurface surface(const std::optional<geometry::Plane>& floor);
 
@@ -56,6 +57,7 @@ class WarpFusion {
     [[nodiscard]] Volume fused() const;
     [[nodiscard]] double loop_rms() const;
     [[nodiscard]] double surface_rms(const Volume& volume) const;
+    [[nodiscard]] std::vector<float> template_distances() const;
     [[nodiscard]] double template_distance() const;
     void each_view(const std::function<void(std::size_t)>& work) const {
         rows_(static_cast<std::uint32_t>(views_.size()), 1,
@@ -118,9 +120,28 @@ void WarpFusion::bind_all() {
 
 /// Where the template is the person's own surface, limbs that are elsewhere were not followed.
 void WarpFusion::leave_out_astray() {
-    if (!layout_) return;
-    if (template_distance() < options_.likely_m)
-        report_.limbs_astray = scan::leave_out_astray(*layout_, *surface_, {}, views_, rows_);
+    if (!layout_ || template_distance() >= options_.likely_m) return;
+    constexpr float kBeside_m = 0.04f;
+    constexpr double kBag = 0.02, kWideClothes = 0.15; // shares
+    const std::vector<float> off = template_distances();
+    report_.beside_share = static_cast<double>(std::count_if(
+                               off.begin(), off.end(), [](float d) { return d > kBeside_m; })) /
+                           static_cast<double>(std::max<std::size_t>(1, off.size()));
+    AstrayOptions options;
+    report_.carried_left_out = report_.beside_share > kBag && report_.beside_share < kWideClothes;
+    if (report_.carried_left_out) options.trunk_off_m = options.most_off_m = 0.02f;
+    report_.limbs_astray = scan::leave_out_astray(*layout_, *surface_, options, views_, rows_);
+}
+
+/// What was left out says nothing of the space behind it either.
+void WarpFusion::forget_carried() {
+    if (!report_.carried_left_out) return;
+    for (WarpedView& view : views_)
+        for (std::size_t i = 0; i < view.bindings.size(); ++i)
+            if (view.view.depth[i] > 0.0f && !view.bound(i)) {
+                view.view.depth[i] = view.view.weight[i] = 0.0f;
+                view.view.beyond[i] = Beyond::unknown;
+            }
 }
 
 /// What the views of the end of the turn see of the start, off each other.
@@ -271,8 +292,8 @@ double WarpFusion::surface_rms(const Volume& volume) const {
     return count > 0.0 ? std::sqrt(square / count) : 0.0;
 }
 
-/// Median distance of the readings from the template.
-double WarpFusion::template_distance() const {
+/// Of some of the readings from the template.
+std::vector<float> WarpFusion::template_distances() const {
     std::vector<float> off;
     for (const WarpedView& view : views_) {
         const PulledView seen = pulled(view);
@@ -280,6 +301,12 @@ double WarpFusion::template_distance() const {
             if (seen.points[p].x() == seen.points[p].x())
                 off.push_back(surface_->nearest(seen.points[p]).distance);
     }
+    return off;
+}
+
+/// Their median.
+double WarpFusion::template_distance() const {
+    std::vector<float> off = template_distances();
     if (off.empty()) return 1.0;
     const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
     std::nth_element(off.begin(), middle, off.end());
@@ -326,6 +353,7 @@ WarpedSurface fuse_warped(std::vector<NumberedView> views, const MovingTemplate&
     if (!parts.groups.empty()) fusion.register_parts_first(parts);
     progress(0.3);
     fusion.register_all(progress);
+    fusion.forget_carried();
     fusion.take_off_bias();
     progress(0.85);
     return fusion.surface(floor);

@@ -44,6 +44,8 @@ struct WarpFusionReport {
     std::vector<double> residuals_m; ///< before the limbs were followed, after it, each iteration
     std::size_t parts_left_out = 0;  ///< of views
     std::size_t limbs_astray = 0;    ///< of views: far from a template that elsewhere is near
+    double beside_share = 0.0;       ///< of the readings: more than 4 cm off such a template
+    bool carried_left_out = false;   ///< since that is too little for wide clothes
     double bound_share = 0.0;        ///< of the readings: near the template
     double largest_move_m = 0.0;     ///< of a node beside the template's own motion
     double loop_gap_m = 0.0;   ///< rms along the normals between the last views and the first ones,

@@ -25,6 +25,8 @@ nlohmann::ordered_json told(const WarpFusionReport& r) {
                 {"overlap", r.rounds.empty() ? 0.0 : r.rounds.back().overlap},
                 {"loop", {{"gap_m", r.loop_gap_m}, {"error_m", r.loop_error_m}}},
                 {"limbs_astray", r.limbs_astray},
+                {"beside_share", r.beside_share},
+                {"carried_left_out", r.carried_left_out},
                 {"bound_share", r.bound_share},
                 {"largest_move_m", r.largest_move_m},
                 {"readings_rms_m", r.surface_rms_m},

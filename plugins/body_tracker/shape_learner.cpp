@@ -62,7 +62,7 @@ void ShapeLearner::add(Registration& registration, const SeenPerson& seen,
 
 void ShapeLearner::solve(body::ShapeVector& shape, Wear& wear) {
     Eigen::MatrixXd all = information_;
-    Eigen::VectorXd value = value_;
+    const Eigen::VectorXd& value = value_;
     all.diagonal().head(kShapes).array() += kPriorWeight;
     all.diagonal().tail(kWearCount).array() += 1.0 / (kUsualWear * kUsualWear);
     Eigen::VectorXd found = all.llt().solve(value);
