@@ -4,6 +4,7 @@
 #include "scan/fusion.h"
 #include "scan/subject.h"
 #include "support/depth_pictures.h"
+#include "support/meshes.h"
 
 #include <gtest/gtest.h>
 #include <numbers>
@@ -122,6 +123,48 @@ TEST(WarpFusion, RoundsBringTheViewsTogether) {
     EXPECT_LT(fused().report.loop_error_m, fused().report.loop_gap_m);
     EXPECT_GT(fused().report.largest_move_m, 0.01); // it did bend
     EXPECT_GT(fused().report.bound_share, 0.95);
+}
+
+/// The stiff lump with a box at its side, as somebody carries a bag.
+std::vector<NumberedView> carrying() {
+    geometry::TriangleMesh both = lump();
+    const geometry::TriangleMesh bag = test::box({0.08f, -0.20f, -0.06f}, {0.25f, -0.09f, 0.06f});
+    const auto first = static_cast<std::uint32_t>(both.positions.size());
+    both.positions.insert(both.positions.end(), bag.positions.begin(), bag.positions.end());
+    for (const Triangle& t : bag.triangles)
+        both.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    const geometry::NearestSurface surface(both.positions, both.triangles);
+    const auto camera = test::small_depth_camera();
+    std::vector<NumberedView> out;
+    for (int k = 0; k < kViews; ++k) {
+        const auto depth = test::depth_picture(
+            surface, camera, test::camera_around(2.0 * std::numbers::pi * k / kViews), 0.001f,
+            static_cast<std::uint64_t>(k) + 1);
+        const Subject subject = find_subject({camera, depth, {}}, Vec3f::UnitY());
+        out.push_back({static_cast<std::uint32_t>(k),
+                       filtered_view({camera, depth, {}}, subject.mask, {}, serial_rows)});
+    }
+    return out;
+}
+
+/// Bags were bound to whatever was nearest, and became part of the hip.
+TEST(WarpFusion, WhatIsCarriedIsLeftOutWhereTheBodyIsKnown) {
+    PartStage parts;
+    parts.groups.assign(lump().positions.size(), BodyGroup::trunk);
+    const auto scanned = [&](std::vector<NumberedView> seen, const PartStage& stage) {
+        return fuse_warped(std::move(seen), stiff_template(), std::nullopt, options(1), stage,
+                           serial_rows, [](double) {});
+    };
+    const WarpedSurface with = scanned(carrying(), {});
+    EXPECT_FALSE(with.report.carried_left_out); // nobody said that it is a body
+    EXPECT_GT(off(with.mesh).second, 0.05);
+    const WarpedSurface without = scanned(carrying(), parts);
+    EXPECT_TRUE(without.report.carried_left_out);
+    EXPECT_GT(without.report.beside_share, 0.02);
+    EXPECT_LT(off(without.mesh).second, 0.02);
+    const WarpedSurface empty_handed = scanned(views(), parts);
+    EXPECT_FALSE(empty_handed.report.carried_left_out);
+    EXPECT_LT(empty_handed.report.beside_share, 0.02);
 }
 
 TEST(WarpFusion, GivesTheSameBytesOnAnyNumberOfThreads) {
