@@ -92,4 +92,54 @@ std::optional<Plane> find_floor(std::span<const Vec3f> points, const Vec3f& up_h
     return refined_plane(*found, test, kOnPlane);
 }
 
+std::optional<float> podium_top(const Plane& floor, std::span<const Vec3f> points) {
+    constexpr float kBin_m = 0.01f, kHighest_m = 0.35f, kLegs_m = 0.6f;
+    constexpr std::size_t kWindow = 3, kTops = 35, kBins = 60;
+    constexpr double kTimesLegs = 5.0, kLeastShare = 0.08, kLeastSpread_m = 0.1, kLeastAbove = 0.25;
+    std::array<std::size_t, kBins> counts{};
+    const auto height = [&](const Vec3f& p) { return floor.normal.dot(p) - floor.offset; };
+    for (const Vec3f& p : points) {
+        const float h = height(p);
+        if (h >= 0.0f && h < kLegs_m) ++counts[static_cast<std::size_t>(h / kBin_m)];
+    }
+    const auto all = static_cast<double>(points.size());
+    const auto window = [&](std::size_t first) {
+        return counts[first] + counts[first + 1] + counts[first + 2];
+    };
+    std::size_t best = 0;
+    for (std::size_t b = 1; b + kWindow <= kTops; ++b)
+        if (window(b) > window(best)) best = b;
+    double legs = 0.0;
+    for (std::size_t b = kTops; b < kBins; ++b)
+        legs += static_cast<double>(kWindow * counts[b]) / static_cast<double>(kBins - kTops);
+    const auto most = static_cast<double>(window(best));
+    if (most < kTimesLegs * legs || most < kLeastShare * all) return {};
+    std::size_t above = 0, count = 0;
+    const float low = kBin_m * static_cast<float>(best);
+    double heights = 0.0;
+    Vec3d sum = Vec3d::Zero();
+    Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+    for (const Vec3f& p : points) {
+        if (height(p) < low) continue;
+        if (height(p) >= low + kWindow * kBin_m) {
+            ++above;
+            continue;
+        }
+        ++count;
+        heights += static_cast<double>(height(p));
+        sum += p.cast<double>();
+        square += p.cast<double>() * p.cast<double>().transpose();
+    }
+    if (count == 0 || static_cast<double>(above) < kLeastAbove * all) return {};
+    const auto n = static_cast<double>(count);
+    const Vec3d middle = sum / n;
+    const Eigen::Matrix3d spread = square / n - middle * middle.transpose();
+    // The least of the three is across the top.
+    if (Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()[1] <
+        kLeastSpread_m * kLeastSpread_m)
+        return {};
+    const auto out = static_cast<float>(heights / n);
+    return out < kHighest_m ? std::optional(out) : std::nullopt;
+}
+
 } // namespace toile::geometry

@@ -26,4 +26,9 @@ namespace toile::geometry {
 [[nodiscard]] std::optional<Plane> find_floor(std::span<const Vec3f> points, const Vec3f& up_hint,
                                               float most_angle);
 
+/// Height above the floor of a podium's top, metres, if what was seen stands on one at most 0.35 m
+/// high: more points at one height than legs can have, spread over both directions, with at least a
+/// quarter of all above.
+[[nodiscard]] std::optional<float> podium_top(const Plane& floor, std::span<const Vec3f> points);
+
 } // namespace toile::geometry

@@ -98,60 +98,6 @@ bool holds_enough(const geometry::Plane& plane, const std::vector<Vec3f>& points
     return static_cast<double>(on) > kLeastShare * static_cast<double>(points.size());
 }
 
-/// Height above the floor of a podium's top, if the piece stands on one: more readings at one
-/// height than legs can have, spread over both directions.
-std::optional<float> podium_top(const geometry::Plane& floor, const std::vector<Vec3f>& points,
-                                const std::vector<std::int32_t>& of, std::int32_t piece) {
-    constexpr float kBin_m = 0.01f, kHighest_m = 0.35f, kLegs_m = 0.6f;
-    constexpr std::size_t kWindow = 3, kTops = 35, kBins = 60;
-    constexpr double kTimesLegs = 5.0, kLeastShare = 0.08, kLeastSpread_m = 0.1,
-                     kLeastAbove = 0.25; // share of the piece that must stand on it
-    std::array<std::size_t, kBins> counts{};
-    std::size_t all = 0;
-    const auto height = [&](std::size_t i) { return floor.normal.dot(points[i]) - floor.offset; };
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (of[i] != piece) continue;
-        ++all;
-        const float h = height(i);
-        if (h >= 0.0f && h < kLegs_m) ++counts[static_cast<std::size_t>(h / kBin_m)];
-    }
-    const auto window = [&](std::size_t first) {
-        return counts[first] + counts[first + 1] + counts[first + 2];
-    };
-    std::size_t best = 0;
-    for (std::size_t b = 1; b + kWindow <= kTops; ++b)
-        if (window(b) > window(best)) best = b;
-    double legs = 0.0;
-    for (std::size_t b = kTops; b < kBins; ++b)
-        legs += static_cast<double>(kWindow * counts[b]) / static_cast<double>(kBins - kTops);
-    const auto most = static_cast<double>(window(best));
-    if (most < kTimesLegs * legs || most < kLeastShare * static_cast<double>(all)) return {};
-    Pieces::Piece top;
-    std::size_t above = 0;
-    const float low = kBin_m * static_cast<float>(best);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (of[i] != piece || height(i) < low) continue;
-        if (height(i) >= low + kWindow * kBin_m) {
-            ++above;
-            continue;
-        }
-        top.add(points[i]);
-        sum += static_cast<double>(height(i));
-    }
-    if (top.count == 0 || static_cast<double>(above) < kLeastAbove * static_cast<double>(all))
-        return {};
-    const Vec3d middle = top.sum / static_cast<double>(top.count);
-    const Eigen::Matrix3d spread =
-        top.square / static_cast<double>(top.count) - middle * middle.transpose();
-    // The least of the three is across the top.
-    if (Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()[1] <
-        kLeastSpread_m * kLeastSpread_m)
-        return {};
-    const auto out = static_cast<float>(sum / static_cast<double>(top.count));
-    return out < kHighest_m ? std::optional(out) : std::nullopt;
-}
-
 /// Readings on the floor, below it or hardly above it are of no use.
 void take_off(const geometry::Plane& floor, const std::vector<Vec3f>& points,
               std::vector<std::uint8_t>& usable) {
@@ -187,8 +133,13 @@ Subject find_subject(const Picture& picture, const Vec3f& up) {
     if (out.floor) take_off(*out.floor, points, usable);
     Pieces pieces = pieces_of(picture, points, usable);
     std::int32_t main = main_piece(pieces);
-    const auto top = out.floor && main >= 0 ? podium_top(*out.floor, points, pieces.of, main)
-                                            : std::optional<float>();
+    std::optional<float> top;
+    if (out.floor && main >= 0) {
+        std::vector<Vec3f> piece;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (pieces.of[i] == main) piece.push_back(points[i]);
+        top = geometry::podium_top(*out.floor, piece);
+    }
     if (top) {
         out.floor->offset += *top;
         take_off(*out.floor, points, usable);

@@ -142,23 +142,43 @@ bool of_human_size(const Piece& piece) {
     return size.y() > kShortest && size.y() < kTallest && std::max(size.x(), size.z()) < kWidest;
 }
 
+/// Null: nobody.
+const Piece* largest_person(const std::vector<Piece>& pieces) {
+    const Piece* out = nullptr;
+    for (const Piece& piece : pieces)
+        if (of_human_size(piece) && (out == nullptr || piece.points.size() > out->points.size()))
+            out = &piece;
+    return out;
+}
+
 } // namespace
 
 FoundPerson find_person(std::span<const Vec3f> points, const Vec3f& up,
                         const std::optional<geometry::Plane>& floor) {
     FoundPerson out;
     out.mask.assign(points.size(), 0);
+    out.floor = floor;
     std::vector<std::uint8_t> keep(points.size(), 1);
-    if (floor)
+    const auto cut_floor = [&] {
         for (std::size_t i = 0; i < points.size(); ++i)
-            if (floor->normal.dot(points[i]) - floor->offset < kFloorCut) keep[i] = 0;
+            if (out.floor->normal.dot(points[i]) - out.floor->offset < kFloorCut) keep[i] = 0;
+    };
+    if (out.floor) cut_floor();
     remove_walls(points, up, keep);
     const Mat3f level = Quatf::FromTwoVectors(up, Vec3f::UnitY()).toRotationMatrix();
     auto pieces = pieces_of(points, level, keep);
-    const Piece* person = nullptr;
-    for (const Piece& piece : pieces)
-        if (of_human_size(piece) && (!person || piece.points.size() > person->points.size()))
-            person = &piece;
+    const Piece* person = largest_person(pieces);
+    if (out.floor && person != nullptr) {
+        std::vector<Vec3f> seen;
+        for (const std::size_t i : person->points)
+            seen.push_back(points[i]);
+        if (const auto top = geometry::podium_top(*out.floor, seen)) {
+            out.floor->offset += *top;
+            cut_floor();
+            pieces = pieces_of(points, level, keep);
+            person = largest_person(pieces);
+        }
+    }
     if (person == nullptr || person->points.size() < kFewPoints) {
         out.trouble = pieces.empty() ? "nothing stands above the floor"
                                      : "nothing there is between 0.7 and 2.4 m tall and at most "
@@ -203,6 +223,7 @@ ObservedPerson observe_person(std::span<const std::shared_ptr<DepthView>> views,
     }
     out.floor = geometry::find_floor(points, Vec3f::UnitY(), kFloorTilt);
     const FoundPerson found = find_person(points, Vec3f::UnitY(), out.floor);
+    out.floor = found.floor;
     out.trouble = found.trouble;
     out.height_m = found.height_m;
     if (!out.trouble.empty()) return out;

@@ -12,10 +12,11 @@
 namespace toile::scape_fit {
 
 struct FoundPerson {
-    std::vector<std::uint8_t> mask; ///< 1 for each point of the person
-    std::size_t count = 0;          ///< of the person's points
-    float height_m = 0.0f;          ///< along up
-    std::string trouble;            ///< why nobody was found; empty when somebody was
+    std::vector<std::uint8_t> mask;       ///< 1 for each point of the person
+    std::size_t count = 0;                ///< of the person's points
+    float height_m = 0.0f;                ///< along up
+    std::optional<geometry::Plane> floor; ///< or the top of the podium that the person stands on
+    std::string trouble;                  ///< why nobody was found; empty when somebody was
 };
 
 /// The person among points (world, metres): what is left above the floor and off large flat walls

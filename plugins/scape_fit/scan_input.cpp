@@ -126,7 +126,7 @@ bool try_unit(const geometry::TriangleMesh& mesh, PreparedScan& out) {
         const FoundPerson found = find_person(points, floor->normal, floor);
         if (!found.trouble.empty() || found.height_m < kStanding || found.height_m > kLargest)
             continue;
-        out.floor = floor;
+        out.floor = found.floor;
         out.ups = {floor->normal};
         person = part(mesh, found.mask);
         break;

@@ -43,6 +43,22 @@ TEST(DepthFit, FourSidesGiveTheBody) {
     EXPECT_GT(session().report().at("seen_share").get<double>(), 0.8);
 }
 
+/// The podium was taken for part of the body, and the fit refused.
+TEST(DepthFit, APodiumIsFloor) {
+    const Somebody who;
+    geometry::TriangleMesh raised = who.surface;
+    for (Vec3f& p : raised.positions)
+        p.y() += 0.06f;
+    add(raised, test::box(Vec3f(-0.45f, 0.0f, -0.45f), Vec3f(0.45f, 0.06f, 0.45f)));
+    session().begin(four_sides());
+    show(four_sides(), &raised);
+    session().fit({}, &serial_rows);
+    PosedLevel found = session().surface(0);
+    for (Vec3f& p : found.positions)
+        p.y() -= 0.06f;
+    EXPECT_LT(error_mm(who, found), 3.0) << session().report().dump(1);
+}
+
 TEST(DepthFit, ACameraThatIsOffIsPutRight) {
     const Somebody who;
     std::vector<FitCamera> cameras = four_sides(), told = cameras;
