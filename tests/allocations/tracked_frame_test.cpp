@@ -8,7 +8,7 @@
 namespace toile::body_tracker {
 namespace {
 
-constexpr int kKnown = 75, kCounted = 45;
+constexpr int kKnown = 155, kCounted = 45;
 constexpr int kJump = kKnown + 35; // aside and into another pose: a search follows
 
 TEST(TrackedFrame, AllocatesNothing) {

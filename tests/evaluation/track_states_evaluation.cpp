@@ -23,11 +23,11 @@ using body::kJointCount;
 using toile::Vec3d;
 using toile::Vec3f;
 
-constexpr std::uint32_t kKnown = 70;     // frames until somebody and the shape are known
-constexpr std::uint32_t kPerEvent = 150; // frames of a motion for each induced failure
+constexpr std::uint32_t kKnown = 145;    // frames until somebody and the shape are known
+constexpr std::uint32_t kPerEvent = 225; // frames of a motion for each induced failure
 constexpr std::uint32_t kAfter = 3;      // frames after the gap until the pose is judged
 constexpr std::uint32_t kRecovered = 10; // and until it should be right again
-constexpr std::uint32_t kRestKnown = 75, kRestFrames = 150;
+constexpr std::uint32_t kRestKnown = 150, kRestFrames = 150;
 
 struct Settings {
     fs::path model, people, forest;
