@@ -37,6 +37,14 @@ class WarpedPlaces : public ViewPlaces {
     std::vector<std::vector<Warp>> inverse_; // (views) (nn)
 };
 
+/// Far where there is nothing.
+double median(std::vector<float> values) {
+    if (values.empty()) return 1.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return static_cast<double>(*middle);
+}
+
 /// All of one scan.
 class WarpFusion {
   public:
@@ -58,7 +66,6 @@ class WarpFusion {
     [[nodiscard]] double loop_rms() const;
     [[nodiscard]] double surface_rms(const Volume& volume) const;
     [[nodiscard]] std::vector<float> template_distances() const;
-    [[nodiscard]] double template_distance() const;
     void each_view(const std::function<void(std::size_t)>& work) const {
         rows_(static_cast<std::uint32_t>(views_.size()), 1,
               [&](std::uint32_t begin, std::uint32_t end) {
@@ -120,10 +127,11 @@ void WarpFusion::bind_all() {
 
 /// Where the template is the person's own surface, limbs that are elsewhere were not followed.
 void WarpFusion::leave_out_astray() {
-    if (!layout_ || template_distance() >= options_.likely_m) return;
+    if (!layout_) return;
     constexpr float kBeside_m = 0.04f;
     constexpr double kBag = 0.02, kWideClothes = 0.15; // shares
     const std::vector<float> off = template_distances();
+    if (median(off) >= options_.likely_m) return;
     report_.beside_share = static_cast<double>(std::count_if(
                                off.begin(), off.end(), [](float d) { return d > kBeside_m; })) /
                            static_cast<double>(std::max<std::size_t>(1, off.size()));
@@ -304,15 +312,6 @@ std::vector<float> WarpFusion::template_distances() const {
     return off;
 }
 
-/// Their median.
-double WarpFusion::template_distance() const {
-    std::vector<float> off = template_distances();
-    if (off.empty()) return 1.0;
-    const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-    std::nth_element(off.begin(), middle, off.end());
-    return static_cast<double>(*middle);
-}
-
 WarpedSurface WarpFusion::surface(const std::optional<geometry::Plane>& floor) {
     const Volume volume = fused();
     std::optional<geometry::Plane> ground;
@@ -321,7 +320,7 @@ WarpedSurface WarpFusion::surface(const std::optional<geometry::Plane>& floor) {
     for (const WarpedView& view : views_)
         views.push_back(&view.view);
     const WarpedPlaces places(graph_, shape_, *surface_, views_);
-    report_.template_off_m = template_distance();
+    report_.template_off_m = median(template_distances());
     ClosedSurface closed =
         closed_surface(volume, views, places, ground,
                        report_.template_off_m < options_.likely_m ? &*surface_ : nullptr, rows_);
